@@ -1,0 +1,29 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace ruche {
+
+/// A long computation tells its caller how far it is. The library never prints.
+struct Progress {
+    std::string_view phase;  ///< "mesh", "release", "picture", ...
+    double fraction = 0.0;   ///< of this phase, 0 to 1; negative when it cannot be known
+    std::string text;        ///< one line for a person, such as "iteration 4: residual 2.1e-03 N"
+};
+
+/// What a caller gives to a long computation: where to report, and a flag that asks it to stop at the next
+/// safe point.
+struct Control {
+    std::function<void(const Progress&)> report;
+    const std::atomic<bool>* stop = nullptr;
+
+    void say(const Progress& progress) const {
+        if (report) report(progress);
+    }
+    bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+};
+
+}  // namespace ruche

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "ruche/geometry/vectors.hpp"
+
+namespace ruche {
+
+/// A polygon with holes, mm: `outer` counter-clockwise, `holes` clockwise, none repeats its first point.
+struct Polygon {
+    Polyline outer;
+    std::vector<Polyline> holes;
+};
+
+/// A set of polygons with disjoint interiors.
+using Region = std::vector<Polygon>;
+
+enum class FillRule { nonzero, evenodd };
+enum class LineCap { butt, round, square };
+enum class LineJoin { miter, round, bevel };
+
+struct StrokeStyle {
+    double width = 1.0;
+    LineCap cap = LineCap::butt;
+    LineJoin join = LineJoin::miter;
+    double miter_limit = 4.0;
+    double arc_tolerance = 0.01;  ///< largest distance between a round cap or join and its chords, mm
+};
+
+/// Boolean operations on a 1 nm grid (Clipper); results are simple polygons without slivers below the grid.
+Region region_from_loops(std::span<const Polyline> loops, FillRule rule);
+Region unite(std::span<const Region> regions);
+Region intersect(const Region& a, const Region& b);
+Region subtract(const Region& a, const Region& b);
+
+/// Grows (distance > 0) or shrinks a region, round corners within `arc_tolerance`.
+Region offset(const Region& region, double distance, double arc_tolerance = 0.01);
+
+/// What a pen of the given style covers when it follows `line`.
+Region stroke(const Polyline& line, bool closed, const StrokeStyle& style);
+
+double area(const Region& region);
+bool contains(const Region& region, const Vec2& point);
+
+}  // namespace ruche

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace ruche {
+
+using Vec2 = Eigen::Vector2d;
+using Vec3 = Eigen::Vector3d;
+using Mat2 = Eigen::Matrix2d;
+using Mat3 = Eigen::Matrix3d;
+
+/// An open or closed chain of points in the layout, mm. Closed chains do not repeat their first point.
+using Polyline = std::vector<Vec2>;
+
+}  // namespace ruche

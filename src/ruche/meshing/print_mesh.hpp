@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ruche/geometry/triangle_mesh.hpp"
+#include "ruche/pattern/pattern.hpp"
+
+namespace ruche {
+
+/// The plastic on one triangle: thickness in mm on each side, 0 where there is none; Young's modulus in MPa,
+/// 0 = the card's.
+struct Print {
+    double front = 0.0;
+    double back = 0.0;
+    double front_modulus = 0.0;
+    double back_modulus = 0.0;
+
+    bool bare() const { return front == 0.0 && back == 0.0; }
+    bool operator==(const Print&) const = default;
+};
+
+/// A point of the layout on the mesh: a triangle and barycentric coordinates.
+struct MeshPoint {
+    int triangle = -1;
+    double weights[3] = {0, 0, 0};
+};
+
+/// A strip as the mesh carries it: where its centre line runs.
+struct MeshedStrip {
+    std::string id;
+    Side side = Side::front;
+    double thickness = 0.0;
+    std::vector<std::vector<MeshPoint>> centreline;  ///< evenly spaced, at most half an element apart
+};
+
+/// The conforming mesh of a pattern: every border of a strip is made of edges.
+struct PrintMesh {
+    TriangleMesh mesh;
+    std::vector<Print> print;  ///< per triangle
+    std::vector<int>
+        strip;  ///< per triangle: index into `strips` of the strip on it (the thickest), -1 = bare
+    std::vector<MeshedStrip> strips;
+    std::vector<std::string> warnings;
+};
+
+struct MeshOptions {
+    double size_mm = 1.0;          ///< edge length of plastic elements
+    double elements_across = 1.0;  ///< at least so many elements across a strip's width
+    double fabric_size_mm = 2.0;   ///< edge length far from plastic
+    double grading = 0.3;          ///< growth of edge length per length away from plastic
+};
+
+/// Conforming constrained Delaunay mesh with minimum angle above 20 degrees away from sharper input angles,
+/// triangle and vertex numbers deterministic and spatially coherent. Throws InputError.
+PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options = {});
+
+/// Reads a layout mesh with print thickness per triangle from a PLY with face properties (`front_mm`,
+/// `back_mm`) or an OBJ (+ `thickness_table`: a CSV of triangle, front_mm, back_mm). Throws InputError.
+PrintMesh read_print_mesh(const std::string& path, const std::string& thickness_table = {});
+
+}  // namespace ruche
