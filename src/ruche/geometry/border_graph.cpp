@@ -220,8 +220,8 @@ class Splitter {
     std::vector<std::vector<Cut>> cuts_;
 };
 
-// Merges and splits until nothing changes any more ("iterated snap rounding", Halperin and Packer 2002, with a
-// tolerance instead of pixels).
+// Merges and splits until nothing changes any more ("iterated snap rounding", Halperin and Packer 2002, with
+// a tolerance instead of pixels).
 void snap_together(BorderGraph& graph, double snap) {
     compact(graph);
     for (int pass = 0; pass < most_passes; ++pass) {
@@ -237,7 +237,8 @@ void append_loop(BorderGraph& graph, const Polyline& loop, int region) {
     const int first = static_cast<int>(graph.points.size());
     const int count = static_cast<int>(loop.size());
     for (const Vec2& p : loop) graph.points.push_back(on_grid(p));
-    for (int i = 0; i < count; ++i) graph.segments.push_back({{first + i, first + (i + 1) % count}, {region}});
+    for (int i = 0; i < count; ++i)
+        graph.segments.push_back({{first + i, first + (i + 1) % count}, {region}});
 }
 
 std::vector<std::vector<int>> segments_at_points(const BorderGraph& graph) {
@@ -258,8 +259,7 @@ struct Chain {
 std::vector<Chain> chains_of(const BorderGraph& graph) {
     const std::vector<std::vector<int>> at = segments_at_points(graph);
     const auto junction = [&](int p) {
-        return at[p].size() != 2 ||
-               graph.segments[at[p][0]].regions != graph.segments[at[p][1]].regions;
+        return at[p].size() != 2 || graph.segments[at[p][0]].regions != graph.segments[at[p][1]].regions;
     };
     std::vector<char> used(graph.segments.size(), 0);
     const auto follow = [&](int start, int segment) {

@@ -11,8 +11,8 @@ namespace ruche {
 
 namespace {
 
-constexpr int samples = 128;         // around a border
-constexpr int steps = samples / 2;   // across from end to end
+constexpr int samples = 128;        // around a border
+constexpr int steps = samples / 2;  // across from end to end
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
 /// A border by 128 evenly spaced points, seen as two sides between two ends.

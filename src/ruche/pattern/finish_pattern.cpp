@@ -13,9 +13,9 @@ namespace ruche {
 
 namespace {
 
-constexpr double largest_shift = 0.02;      // mm, of a border by simplifying
-constexpr double shift_per_width = 0.01;    // of a strip's width
-constexpr double speck = 1e-6;              // mm^2: areas below are rounding, not worth a word
+constexpr double largest_shift = 0.02;        // mm, of a border by simplifying
+constexpr double shift_per_width = 0.01;      // of a strip's width
+constexpr double speck = 1e-6;                // mm^2: areas below are rounding, not worth a word
 constexpr double fabric_arc_tolerance = 0.1;  // mm: chords of about 2 mm around a margin of 5 mm
 
 /// Collects what happened to many strips and says it in one sentence.
@@ -82,22 +82,39 @@ class Overlaps {
 
   private:
     void yield_to(Strip& strip, const std::vector<int>& over, Tally& united, Tally& covered) {
-        std::string names;
+        Region rest = strip.region;
+        std::vector<int> winners;
         for (const int other : over) {
-            const Region rest = subtract(strip.region, strips_[other].region);
-            if (area(strip.region) - area(rest) <= speck) continue;  // they only touch
-            strip.region.clear();
-            for (const Polygon& piece : rest) {
-                (is_sliver(piece) ? strips_[other].region : strip.region).push_back(piece);
+            Region without = subtract(rest, strips_[other].region);
+            if (area(rest) - area(without) <= speck) continue;  // they only touch
+            rest = std::move(without);
+            winners.push_back(other);
+        }
+        if (winners.empty()) return;
+        strip.region.clear();
+        for (Polygon& piece : rest) {
+            Region& owner = is_sliver(piece) ? strips_[neighbour(piece, winners)].region : strip.region;
+            owner.push_back(std::move(piece));
+        }
+        std::string names;
+        for (const int w : winners) names += (names.empty() ? "'" : ", '") + strips_[w].id + "'";
+        (strip.region.empty() ? covered : united).add(fmt::format("'{}' by {}", strip.id, names));
+    }
+
+    // Which of the winners a remainder that is too narrow to print lies against.
+    int neighbour(const Polygon& sliver, const std::vector<int>& winners) const {
+        if (winners.size() == 1) return winners.front();
+        const Region reach = offset({sliver}, snap_mm);
+        int nearest = winners.front();
+        double largest = 0.0;
+        for (const int w : winners) {
+            const double common = area(intersect(reach, strips_[w].region));
+            if (common > largest) {
+                largest = common;
+                nearest = w;
             }
-            names += (names.empty() ? "" : ", ") + ("'" + strips_[other].id + "'");
         }
-        if (names.empty()) return;
-        if (strip.region.empty()) {
-            covered.add(fmt::format("'{}' by {}", strip.id, names));
-        } else {
-            united.add(fmt::format("'{}' by {}", strip.id, names));
-        }
+        return nearest;
     }
 
     std::vector<Strip>& strips_;
@@ -114,10 +131,11 @@ void unite_overlaps(Pattern& pattern) {
         Tally covered;
         Overlaps(pattern.strips, side).resolve(united, covered);
         const char* name = side == Side::front ? "front" : "back";
-        united.warn(pattern.warnings,
-                    fmt::format("overlapping strips on the {} are united, the thickest (else the first) wins; "
-                                "partly covered",
-                                name));
+        united.warn(
+            pattern.warnings,
+            fmt::format("overlapping strips on the {} are united, the thickest (else the first) wins; "
+                        "partly covered",
+                        name));
         covered.warn(pattern.warnings,
                      fmt::format("strips on the {} are wholly covered by others and left out", name));
     }
@@ -180,9 +198,10 @@ void add_missing_centrelines(std::vector<Strip>& strips) {
 
 void check_not_empty(const Pattern& pattern, const char* why) {
     if (!pattern.strips.empty()) return;
-    throw InputError({}, fmt::format("nothing is printed: {}", why),
-                     "Draw strips as strokes or filled shapes, check the rules that say what is printed, or set "
-                     "plastic = \"none\" for bare fabric.");
+    throw InputError(
+        {}, fmt::format("nothing is printed: {}", why),
+        "Draw strips as strokes or filled shapes, check the rules that say what is printed, or set "
+        "plastic = \"none\" for bare fabric.");
 }
 
 }  // namespace

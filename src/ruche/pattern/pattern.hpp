@@ -60,9 +60,10 @@ struct PrintRules {
 };
 
 /// Applies the rules and finishes the pattern. A fabric outline is made of closed curves, nested ones are
-/// holes; without one the fabric is the print grown by the margin, holes filled (margin 0: exactly the print).
-/// Throws InputError (with file, line and element) when nothing is printed, an outline is open or crosses
-/// itself, a feature is narrower than `narrowest_feature_mm`, or a thickness is not a positive number.
+/// holes; without one the fabric is the print grown by the margin, holes filled (margin 0: exactly the
+/// print). Throws InputError (with file, line and element) when nothing is printed, an outline is open or
+/// crosses itself, a feature is narrower than `narrowest_feature_mm`, or a thickness is not a positive
+/// number.
 Pattern make_pattern(const Drawing& drawing, const PrintRules& rules);
 
 /// The same checks, unions and cuts for strips that came from elsewhere (generators); `margin` as in
@@ -70,7 +71,8 @@ Pattern make_pattern(const Drawing& drawing, const PrintRules& rules);
 /// - strips of one side that overlap: the thicker keeps the place (the earlier of equals), a warning says so;
 ///   a remainder too narrow to print goes to it as well;
 /// - what lies beyond the fabric is cut off, a warning says so;
-/// - borders are snapped together (`snap_mm`) and simplified within 1 % of the strip's width, at most 0.02 mm;
+/// - borders are snapped together (`snap_mm`) and simplified within 1 % of the strip's width, at most 0.02
+/// mm;
 ///   `border_shift` and `area_change` report what that did;
 /// - strips without centre lines get the midlines of their regions; centre lines are cut to the final region.
 /// Throws InputError as make_pattern does; a pattern without strips needs `bare` and a fabric.

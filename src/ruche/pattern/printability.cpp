@@ -16,10 +16,11 @@ constexpr double inset = 0.5 * narrowest_feature_mm - 5e-4;
 constexpr double longest_tip = 1.0;
 
 [[noreturn]] void too_narrow(const Place& place, const std::string& what) {
-    throw InputError(place, what,
-                     fmt::format("Nothing narrower than {} mm can be printed. Draw it wider, take it out, or check "
-                                 "the drawing's units.",
-                                 narrowest_feature_mm));
+    throw InputError(
+        place, what,
+        fmt::format("Nothing narrower than {} mm can be printed. Draw it wider, take it out, or check "
+                    "the drawing's units.",
+                    narrowest_feature_mm));
 }
 
 }  // namespace
@@ -28,9 +29,10 @@ bool is_sliver(const Polygon& polygon) { return offset({polygon}, -inset, arc_to
 
 void check_strip(const Strip& strip, const Place& place) {
     if (!(strip.thickness > 0.0) || !std::isfinite(strip.thickness)) {
-        throw InputError(place, fmt::format("a print thickness of {} mm", strip.thickness),
-                         "A thickness is a positive number of mm. To leave something unprinted, ignore it by a "
-                         "rule.");
+        throw InputError(
+            place, fmt::format("a print thickness of {} mm", strip.thickness),
+            "A thickness is a positive number of mm. To leave something unprinted, ignore it by a "
+            "rule.");
     }
     if (!(strip.youngs_modulus >= 0.0) || !std::isfinite(strip.youngs_modulus)) {
         throw InputError(place, fmt::format("a Young's modulus of {} MPa", strip.youngs_modulus),
@@ -47,8 +49,9 @@ void check_strip(const Strip& strip, const Place& place) {
         const double extent = 0.5 * length(rest.outer, true);
         if (extent > longest_tip) {
             const Vec2& at = rest.outer.front();
-            too_narrow(place, fmt::format("is narrower than {} mm for {:.3g} mm near x = {:.4g}, y = {:.4g} mm",
-                                          narrowest_feature_mm, extent, at.x(), at.y()));
+            too_narrow(place,
+                       fmt::format("is narrower than {} mm for {:.3g} mm near x = {:.4g}, y = {:.4g} mm",
+                                   narrowest_feature_mm, extent, at.x(), at.y()));
         }
     }
 }
