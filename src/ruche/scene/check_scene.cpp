@@ -98,17 +98,32 @@ static void check_material(const Scene& scene) {
                          "Give alpha or beta for both axes, or a neo_hookean_share above 0.");
 }
 
+template <class Section>
+static void check_ranges(const Scene& scene, const Section& section, const std::string& path) {
+    for (const Field<Section>& field : fields<Section>())
+        check(info(field), get(section, field), place_in(scene, path + "." + std::string(field.key)));
+}
+
 void check_scene(const Scene& scene) {
     for_each_section(scene, [&]<class Section>(const std::string& name, const Section& section) {
-        for (const Field<Section>& field : fields<Section>())
-            check(info(field), get(section, field), place_in(scene, name + "." + std::string(field.key)));
+        check_ranges(scene, section, name);
     });
+    for (std::size_t i = 0; i < scene.plastic.rules.size(); ++i)
+        check_ranges(scene, scene.plastic.rules[i], fmt::format("plastic.rule.{}", i + 1));
     check_pattern(scene);
     check_material(scene);
-    for (std::size_t i = 0; i < scene.supports.size(); ++i)
-        check_support(scene, scene.supports[i], fmt::format("support.{}", i + 1));
-    for (std::size_t i = 0; i < scene.forces.size(); ++i)
-        check_selection(scene, scene.forces[i], fmt::format("force.{}", i + 1));
+    for (std::size_t i = 0; i < scene.supports.size(); ++i) {
+        const std::string path = fmt::format("support.{}", i + 1);
+        check_ranges<Selection>(scene, scene.supports[i], path);
+        check_ranges(scene, scene.supports[i], path);
+        check_support(scene, scene.supports[i], path);
+    }
+    for (std::size_t i = 0; i < scene.forces.size(); ++i) {
+        const std::string path = fmt::format("force.{}", i + 1);
+        check_ranges<Selection>(scene, scene.forces[i], path);
+        check_ranges(scene, scene.forces[i], path);
+        check_selection(scene, scene.forces[i], path);
+    }
     check_gravity(scene);
 }
 
