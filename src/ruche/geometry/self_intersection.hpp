@@ -15,11 +15,10 @@ struct Intersection {
     Vec3 place;                    ///< mm
 };
 
-/// All pairs of triangles that pass through each other, ordered by triangle numbers: an edge of one crosses
-/// the inside of the other. Pairs that share an edge are not looked at; pairs that only touch, or overlap
-/// within one plane, do not count. Decided by exact arithmetic on coordinates rounded to 1e-12 of the shape's
-/// size, so the answer does not depend on threads or on the triangles' order. Positions that are not finite
-/// intersect nothing.
+/// All pairs of triangles that pass through each other, ordered by triangle numbers: their insides meet along
+/// more than a point. Pairs that share an edge are not looked at; pairs that only touch, or overlap within
+/// one plane, do not count. Decided by exact arithmetic on coordinates rounded to 4e-12 of the shape's size,
+/// so the answer does not depend on threads. Positions that are not finite intersect nothing.
 std::vector<Intersection> find_self_intersections(std::span<const Vec3> positions,
                                                   std::span<const Triangle> triangles);
 

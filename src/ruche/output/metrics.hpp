@@ -27,7 +27,7 @@ struct StripMetrics {
 /// smooth shape whose points the vertices are: by sum_i w_i |x_i - p|^2 in the circle's plane for a point p =
 /// sum_i w_i x_i (exact for vertices on a cylinder: Lagrange's identity); the fit puts them back.
 /// A strip that is curved in the layout is measured in pieces that turn by at most 30 degrees there; in each
-/// the geodesic part is taken off (Meusnier: kappa_n^2 = kappa^2 - kappa_g^2). Pieces, and the lines of a
+/// only the part normal to the sheet counts (Meusnier's theorem). Pieces, and the lines of a
 /// strip with several, are averaged by printed length.
 /// Stretch is that of the triangles (what the membrane energy measures), averaged along the line.
 std::vector<StripMetrics> measure_strips(const PrintMesh& layout, std::span<const Vec3> shape);
