@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,6 @@
 #include "ruche/output/relief.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -1,3 +1,6 @@
+#include <Eigen/Geometry>
+#include <cstdint>
+
 #include "ruche/output/exporters.hpp"
 #include "ruche/output/little_endian.hpp"
 

@@ -1,5 +1,7 @@
 #include "ruche/output/surface_fields.hpp"
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
