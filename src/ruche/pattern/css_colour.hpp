@@ -15,8 +15,8 @@ struct Colour {
 };
 
 /// CSS Color 4 as drawing programs write it: the named colours, "transparent", #rgb, #rgba, #rrggbb,
-/// #rrggbbaa, rgb(), rgba(), hsl(), hsla(); anything behind it (an icc-color()) is ignored. Empty when the text
-/// is no colour.
+/// #rrggbbaa, rgb(), rgba(), hsl(), hsla(); anything behind it (an icc-color()) is ignored. Empty when the
+/// text is no colour.
 std::optional<Colour> parse_css_colour(std::string_view text);
 
 /// "#rrggbb", lower case; the alpha value is left out.

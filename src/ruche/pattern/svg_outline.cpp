@@ -104,7 +104,8 @@ class Flattener {
             append(line_, cubic.d);
             return;
         }
-        const Vec2 ab = (cubic.a + cubic.b) / 2.0, bc = (cubic.b + cubic.c) / 2.0, cd = (cubic.c + cubic.d) / 2.0;
+        const Vec2 ab = (cubic.a + cubic.b) / 2.0, bc = (cubic.b + cubic.c) / 2.0,
+                   cd = (cubic.c + cubic.d) / 2.0;
         const Vec2 abc = (ab + bc) / 2.0, bcd = (bc + cd) / 2.0;
         const Vec2 middle = (abc + bcd) / 2.0;
         split({cubic.a, ab, abc, middle}, depth + 1);

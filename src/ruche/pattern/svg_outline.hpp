@@ -16,8 +16,8 @@ struct CubicTo {
     Vec2 control_1, control_2, end;
 };
 
-/// A piece of an ellipse: centre + u cos(angle) + v sin(angle), angle from `start` to `start + sweep` (radians).
-/// In this form an affine map of an arc is an arc again.
+/// A piece of an ellipse: centre + u cos(angle) + v sin(angle), angle from `start` to `start + sweep`
+/// (radians). In this form an affine map of an arc is an arc again.
 struct ArcTo {
     Vec2 centre, u, v;
     double start, sweep;
@@ -35,8 +35,8 @@ struct Subpath {
 
 using Outline = std::vector<Subpath>;
 
-/// SVG's end point form of an elliptical arc (SVG 1.1, appendix F.6): radii that are too small grow, and an arc
-/// with a vanishing radius is a line.
+/// SVG's end point form of an elliptical arc (SVG 1.1, appendix F.6): radii that are too small grow, and an
+/// arc with a vanishing radius is a line.
 struct EndpointArc {
     Vec2 from, radii;
     double rotation_deg = 0.0;
@@ -52,11 +52,12 @@ Outline polygon_outline(const std::vector<Vec2>& points, bool closed);
 
 struct Flattening {
     double tolerance = 0.01;  ///< largest distance between curve and chords, after the map
-    double pen_radius = 0.0;  ///< half the stroke width, after the map: the stroke's edge keeps the tolerance too
+    double pen_radius =
+        0.0;  ///< half the stroke width, after the map: the stroke's edge keeps the tolerance too
 };
 
-/// The mapped subpath as a chain of points; consecutive ones differ by more than 1e-7, and a closed one does not
-/// repeat its first point. One point alone means that it has no length.
+/// The mapped subpath as a chain of points; consecutive ones differ by more than 1e-7, and a closed one does
+/// not repeat its first point. One point alone means that it has no length.
 Polyline flatten(const Subpath& subpath, const Affine& map, const Flattening& how);
 
 }  // namespace ruche::svg

@@ -63,7 +63,8 @@ class PathReader {
     bool draw(char kind) {
         const Vec2 before = point_;
         switch (kind) {
-            case 'M': return move();
+            case 'M':
+                return move();
             case 'L':
                 if (const auto end = point()) return add(LineTo{*end}, *end);
                 return false;
@@ -74,10 +75,13 @@ class PathReader {
                 if (const auto y = coordinate()) return line_to({before.x(), origin_.y() + *y});
                 return false;
             case 'C':
-            case 'S': return cubic(kind == 'S');
+            case 'S':
+                return cubic(kind == 'S');
             case 'Q':
-            case 'T': return quadratic(kind == 'T');
-            default: return arc();
+            case 'T':
+                return quadratic(kind == 'T');
+            default:
+                return arc();
         }
     }
 

@@ -14,7 +14,8 @@ struct PathReading {
     std::optional<std::string> error;  ///< what is wrong, with the place in the text
 };
 
-/// Path data with all commands of SVG 1.1 and 2 (MZLHVCSQTA, relative too, implicit repeats, compressed flags).
+/// Path data with all commands of SVG 1.1 and 2 (MZLHVCSQTA, relative too, implicit repeats, compressed
+/// flags).
 PathReading parse_path(std::string_view data);
 
 /// The `points` of a polyline or polygon.

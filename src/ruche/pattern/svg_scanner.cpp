@@ -117,16 +117,26 @@ bool Length::physical() const {
 double Length::px(double whole) const {
     switch (unit) {
         case Unit::none:
-        case Unit::px: return value;
-        case Unit::pt: return value * 96.0 / 72.0;
-        case Unit::pc: return value * 16.0;
-        case Unit::mm: return value / mm_per_px;
-        case Unit::cm: return value * 10.0 / mm_per_px;
-        case Unit::in: return value * 96.0;
-        case Unit::q: return value * 0.25 / mm_per_px;
-        case Unit::em: return value * 16.0;
-        case Unit::ex: return value * 8.0;
-        case Unit::percent: return value / 100.0 * whole;
+        case Unit::px:
+            return value;
+        case Unit::pt:
+            return value * 96.0 / 72.0;
+        case Unit::pc:
+            return value * 16.0;
+        case Unit::mm:
+            return value / mm_per_px;
+        case Unit::cm:
+            return value * 10.0 / mm_per_px;
+        case Unit::in:
+            return value * 96.0;
+        case Unit::q:
+            return value * 0.25 / mm_per_px;
+        case Unit::em:
+            return value * 16.0;
+        case Unit::ex:
+            return value * 8.0;
+        case Unit::percent:
+            return value / 100.0 * whole;
     }
     return value;
 }

@@ -123,8 +123,8 @@ Region mapped(const Region& region, const Mat2& map) {
 
 /// Where the pen is round: coordinates in mm that differ from user units by a factor and perhaps a turn.
 struct PenSpace {
-    double scale = 1.0;           ///< from user units
-    Vec2 axis = Vec2::UnitX();    ///< direction of the user's x axis
+    double scale = 1.0;         ///< from user units
+    Vec2 axis = Vec2::UnitX();  ///< direction of the user's x axis
     Mat2 to_mm = Mat2::Identity();
     bool is_mm = true;
 };

@@ -195,10 +195,17 @@ std::optional<Colour> painted(const Paint& paint, double opacity, const Style& s
     if (opacity <= 0.0) return std::nullopt;
     std::optional<Colour> colour;
     switch (paint.kind) {
-        case Paint::Kind::none: break;
-        case Paint::Kind::colour: colour = paint.colour; break;
-        case Paint::Kind::current_colour: colour = style.colour; break;
-        case Paint::Kind::server: colour = server_colour(paint); break;
+        case Paint::Kind::none:
+            break;
+        case Paint::Kind::colour:
+            colour = paint.colour;
+            break;
+        case Paint::Kind::current_colour:
+            colour = style.colour;
+            break;
+        case Paint::Kind::server:
+            colour = server_colour(paint);
+            break;
     }
     if (colour && colour->alpha <= 0.0) return std::nullopt;
     return colour;

@@ -30,8 +30,8 @@ struct Stretches {
 };
 Stretches stretches(const Mat2& linear);
 
-/// The value of a `transform` attribute or property: matrix, translate, scale, rotate, skewX, skewY, any number
-/// of them; angles in degrees unless they carry a CSS unit. Empty when it is not a transform.
+/// The value of a `transform` attribute or property: matrix, translate, scale, rotate, skewX, skewY, any
+/// number of them; angles in degrees unless they carry a CSS unit. Empty when it is not a transform.
 std::optional<Affine> parse_transform(std::string_view text);
 
 /// A rectangle in user units.
