@@ -59,11 +59,7 @@ Place TableReader::place_of_key(std::string_view key) const {
 
 FieldValue TableReader::value_of(const Node& node, const FieldInfo& info) {
     const std::string path = path_of(info.key);
-    if (sources_ != nullptr) {
-        Place place = place_of(node, path);
-        place.key.clear();
-        (*sources_)[path] = to_string(place);
-    }
+    if (sources_ != nullptr) (*sources_)[path] = place_of(node, path);
     return read_value(node, info, path);
 }
 

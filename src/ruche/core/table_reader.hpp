@@ -11,8 +11,8 @@
 
 namespace ruche {
 
-/// Where each value was set, by full name: "fabric.prestretch" -> "kite.toml:14".
-using Sources = std::map<std::string, std::string>;
+/// Where each value was set, by full name: "fabric.prestretch" -> line 14 of kite.toml.
+using Sources = std::map<std::string, Place>;
 
 /// Reads one table of a TOML file into structs and remembers which keys mean something, so that `finish`
 /// can refuse the others. Every error is an InputError with the place of the value.
