@@ -37,6 +37,12 @@ struct GeneratedPattern {
 inline constexpr const char* front_layer = "front";
 inline constexpr const char* back_layer = "back";
 inline constexpr const char* fabric_layer = "fabric";
+inline constexpr const char* fabric_id = "fabric-outline";
+
+/// Colours by which they can be told apart, and matched by rules.
+inline constexpr const char* front_colour = "#d9480f";
+inline constexpr const char* back_colour = "#1864ab";
+inline constexpr const char* fabric_colour = "#e9ecef";
 
 /// The same as a drawing, as if it had been read from the file that `to_svg` writes: layers "front", "back"
 /// and "fabric". Unlike in the file, the origin stays where the generator had it.
