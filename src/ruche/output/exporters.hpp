@@ -17,7 +17,7 @@ std::string to_obj(const ExportSurface& surface, const std::string& material_fil
 /// The material file that `to_obj` names.
 std::string obj_materials();
 
-/// PLY, binary little endian, mm: every vertex and face field as a property. Reads back as a layout mesh
+/// PLY, ASCII, mm: every vertex and face field as a property. Reads back as a layout mesh
 /// with print thickness (`front_mm`, `back_mm`).
 std::string to_ply(const ExportSurface& surface);
 

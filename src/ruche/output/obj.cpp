@@ -5,6 +5,7 @@
 
 #include "ruche/output/exporters.hpp"
 #include "ruche/output/palette.hpp"
+#include "ruche/output/text_rows.hpp"
 
 namespace ruche {
 namespace {
@@ -39,28 +40,33 @@ std::vector<int> sorted_by_strip(const ExportSurface& surface) {
 }  // namespace
 
 std::string to_obj(const ExportSurface& surface, const std::string& material_file) {
-    fmt::memory_buffer text;
-    const auto out = std::back_inserter(text);
-    fmt::format_to(out, "# {} (mm; vt: the flat layout)\nmtllib {}\n", one_word(surface.title),
-                   material_file);
-    for (const Vec3& p : surface.positions) fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
-    for (const Vec2& p : surface.layout) fmt::format_to(out, "vt {} {}\n", p.x(), p.y());
-    for (const Vec3& n : surface.normals) {
-        const Eigen::Vector3f f = n.cast<float>();
-        fmt::format_to(out, "vn {} {} {}\n", f.x(), f.y(), f.z());
-    }
-    int before = -1;
-    for (const int t : sorted_by_strip(surface)) {
+    std::string text =
+        fmt::format("# {} (mm; vt: the flat layout)\nmtllib {}\n", one_word(surface.title), material_file);
+    append_rows(text, surface.positions.size(), [&](auto out, std::size_t v) {
+        const Vec3& p = surface.positions[v];
+        fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
+    });
+    append_rows(text, surface.layout.size(), [&](auto out, std::size_t v) {
+        fmt::format_to(out, "vt {} {}\n", surface.layout[v].x(), surface.layout[v].y());
+    });
+    append_rows(text, surface.normals.size(), [&](auto out, std::size_t v) {
+        const Eigen::Vector3f n = surface.normals[v].cast<float>();
+        fmt::format_to(out, "vn {} {} {}\n", n.x(), n.y(), n.z());
+    });
+    const std::vector<int> order = sorted_by_strip(surface);
+    append_rows(text, order.size(), [&](auto out, std::size_t i) {
+        const int t = order[i];
         const int strip = surface.strip[t];
-        if (before < 0 || strip != surface.strip[before])
-            fmt::format_to(out, "g {}\n", strip < 0 ? "fabric" : one_word(surface.strip_ids[strip]));
-        if (before < 0 || strip != surface.strip[before] || surface.side[t] != surface.side[before])
-            fmt::format_to(out, "usemtl {}\n", materials[static_cast<int>(surface.side[t])].name);
-        before = t;
+        const PrintedSide side = surface.side[t];
+        const bool new_group = i == 0 || strip != surface.strip[order[i - 1]];
+        if (new_group)
+            out = fmt::format_to(out, "g {}\n", strip < 0 ? "fabric" : one_word(surface.strip_ids[strip]));
+        if (new_group || side != surface.side[order[i - 1]])
+            out = fmt::format_to(out, "usemtl {}\n", materials[static_cast<int>(side)].name);
         const auto [a, b, c] = surface.triangles[t];
         fmt::format_to(out, "f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", a + 1, b + 1, c + 1);
-    }
-    return fmt::to_string(text);
+    });
+    return text;
 }
 
 std::string obj_materials() {

@@ -39,9 +39,9 @@ class Array {
 };
 
 std::string data_array(const char* type, const std::string& name, int components, const Array& array) {
-    return fmt::format(
-        "<DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"binary\">{}</DataArray>\n",
-        type, name, components, array.encoded());
+    const std::string shape = components == 1 ? "" : fmt::format(" NumberOfComponents=\"{}\"", components);
+    return fmt::format("<DataArray type=\"{}\" Name=\"{}\"{} format=\"binary\">{}</DataArray>\n", type, name,
+                       shape, array.encoded());
 }
 
 std::string data_array(const DataColumn& column) {

@@ -94,22 +94,16 @@ TEST_CASE("ply: header and first rows are what was put in") {
               "property list uchar int vertex_indices\nproperty double front_mm\nproperty double back_mm\n"
               "property int side\nproperty int strip\nproperty float curvature_max_per_mm\n") !=
           std::string::npos);
-    const std::string body = body_after(file, "end_header\n");
-    constexpr std::size_t vertex_row = 3 * 8 + 3 * 4 + 4 * 4 + 2 * 8;
-    constexpr std::size_t face_row = 1 + 3 * 4 + 2 * 8 + 2 * 4 + 4 * 4 + 2 * 4 + 3 * 4;
-    CHECK(body.size() == 4 * vertex_row + 2 * face_row);
-    CHECK(number_at<double>(body, 3 * vertex_row + 16) == 0.5);
-    CHECK(number_at<int>(body, 4 * vertex_row + 1 + 8) == 2);
-    CHECK(number_at<double>(body, 4 * vertex_row + 13) == 0.6);
-    CHECK(number_at<int>(body, 4 * vertex_row + face_row + 13 + 20) == -1);
+    CHECK(file.find("end_header\n0 0 0 ") != std::string::npos);
+    CHECK(file.find("\n0 2 0.5 ") != std::string::npos);
+    CHECK(file.find("\n3 0 1 2 0.6 0 1 0 ") != std::string::npos);
+    CHECK(file.find("\n3 0 2 3 0 0 0 -1 ") != std::string::npos);
 }
 
 TEST_CASE("vtu: arrays are base64 with their length first") {
     const std::string file = to_vtu(released(two_triangles()));
     // 2 bytes of cell types: length 2 as 8 bytes, then 5, 5.
-    CHECK(
-        file.find("Name=\"types\" NumberOfComponents=\"1\" format=\"binary\">AgAAAAAAAAAFBQ==</DataArray>") !=
-        std::string::npos);
+    CHECK(file.find("Name=\"types\" format=\"binary\">AgAAAAAAAAAFBQ==</DataArray>") != std::string::npos);
     CHECK(file.find("Name=\"mean_curvature_per_mm\"") != std::string::npos);
 }
 
