@@ -22,24 +22,6 @@ struct SolveOptions {
 template <>
 std::span<const Field<SolveOptions>> fields<SolveOptions>();
 
-struct EnergyTerms {
-    double fabric_membrane = 0.0;  ///< mJ
-    double fabric_bending = 0.0;
-    double plastic = 0.0;  ///< the whole laminate, its fabric ply included
-    double gravity = 0.0;  ///< with dead forces and the table's reaction potential
-    double total() const { return fabric_membrane + fabric_bending + plastic + gravity; }
-};
-
-/// What a careful reader of a result has to know.
-struct Health {
-    double max_strain_margin = 0.0;  ///< max over bare fabric of E_ii - gamma_i (negative: inside the law)
-    double min_area_ratio = 1.0;     ///< smallest current / relaxed-fabric area ratio J
-    double max_dihedral_deg = 0.0;
-    double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
-    int beyond_law = 0;                  ///< elements in the law's linear extension
-    int self_intersections = 0;          ///< pairs of triangles that pass through each other
-};
-
 enum class SolveStatus { converged, not_converged, interrupted };
 
 struct Equilibrium {
