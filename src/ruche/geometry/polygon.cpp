@@ -277,4 +277,25 @@ bool contains(const Region& region, const Vec2& point) {
     return inside;
 }
 
+double strip_width(const Polygon& polygon) {
+    double half = 0.5 * length(polygon.outer, true);
+    for (const Polyline& hole : polygon.holes) half += 0.5 * length(hole, true);
+    // a + b = half, a b = area
+    const double square = half * half - 4.0 * area({polygon});
+    return 0.5 * (half - std::sqrt(std::max(0.0, square)));
+}
+
+Box bounding_box(const Region& region) {
+    Box box;
+    bool first = true;
+    for (const Polygon& polygon : region) {
+        for (const Vec2& p : polygon.outer) {
+            box.low = first ? p : Vec2(box.low.cwiseMin(p));
+            box.high = first ? p : Vec2(box.high.cwiseMax(p));
+            first = false;
+        }
+    }
+    return box;
+}
+
 }  // namespace ruche
