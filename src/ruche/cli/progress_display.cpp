@@ -13,8 +13,11 @@ using namespace std::chrono_literals;
 
 ProgressDisplay::ProgressDisplay() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressDisplay::~ProgressDisplay() {
+ProgressDisplay::~ProgressDisplay() { clear(); }
+
+void ProgressDisplay::clear() {
     if (bar_shown_) std::fputs("\r\x1b[K", stderr);
+    bar_shown_ = false;
 }
 
 void ProgressDisplay::show(const Progress& progress) {

@@ -17,6 +17,7 @@ class ProgressDisplay {
     ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
     void show(const Progress& progress);
+    void clear();  ///< takes the bar away
 
   private:
     void show_bar(const Progress& progress);
