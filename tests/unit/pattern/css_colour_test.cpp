@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "ruche/pattern/css_colour.hpp"
 
 using namespace ruche;
@@ -9,7 +11,7 @@ TEST_CASE("css colour: every notation of red is red") {
          {"red", "RED", " Red ", "#f00", "#F00", "#ff0000", "#f00f", "#ff0000ff", "rgb(255,0,0)",
           "rgb(255 0 0)", "rgb( 100% , 0% , 0% )", "rgba(255,0,0,1)", "rgb(255 0 0 / 100%)", "rgb(300,-5,0)",
           "hsl(0,100%,50%)", "hsl(360deg 100% 50%)", "hsla(1turn,100%,50%,1)", "#ff0000 icc-color(x, 1)"}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         REQUIRE(parse_css_colour(text));
         CHECK(*parse_css_colour(text) == Colour{255, 0, 0, 1.0});
     }
@@ -40,7 +42,7 @@ TEST_CASE("css colour: alpha is read from every notation that has it") {
 TEST_CASE("css colour: anything else is none") {
     for (const char* text : {"", "rad", "#", "#ff", "#fffff", "#fffffff", "#ggg", "rgb(1,2)", "rgb(1,2,3",
                              "rgb(a,b,c)", "url(#x)", "none", "rgb", "rgb(1,2,3,4,5)", "#123456789"}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         CHECK_FALSE(parse_css_colour(text));
     }
 }

@@ -33,7 +33,7 @@ TEST_CASE("svg page: width, height and viewBox give the physical size in every u
           {"width='100mm' height='100mm' viewBox='0 0 50 20'", 100, 100, 20, false},
           {"width='100mm' height='100mm' viewBox='0 0 50 20' preserveAspectRatio='xMinYMin slice'", 100, 100,
            50, false}}) {
-        CAPTURE(c.attributes);
+        CAPTURE(std::string(c.attributes));
         const Drawing drawing = svg_text::read(square(c.attributes));
         CHECK(drawing.width == doctest::Approx(c.width).epsilon(1e-12));
         CHECK(drawing.height == doctest::Approx(c.height).epsilon(1e-12));

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <string>
+
 #include "ruche/pattern/svg_scanner.hpp"
 
 using namespace ruche::svg;
@@ -16,12 +18,14 @@ TEST_CASE("svg scanner: a number ends where the next one can begin") {
 }
 
 TEST_CASE("svg scanner: what is no finite number is none") {
-    for (const char* text : {"", "-", "+", ".", "e5", "nan", "inf", "-inf", "0x10p", "1e999", "--1", "+-1"}) {
-        CAPTURE(text);
-        CHECK_FALSE((parse_number(text) && std::string_view(text) != "0x10p"));
+    for (const char* text :
+         {"", "-", "+", ".", "e5", "nan", "inf", "-inf", "0x10", "1e999", "-1e999", "--1", "+-1", "1 2"}) {
+        CAPTURE(std::string(text));
+        CHECK_FALSE(parse_number(text));
     }
+    CHECK_FALSE(parse_number(std::string(400, '9')));
+    CHECK(parse_number("0." + std::string(400, '0') + "1") == 0.0);
     CHECK(parse_number("1e-999") == 0.0);
-    CHECK_FALSE(parse_number("0x10"));
     CHECK(parse_number(" 5. ") == 5.0);
 }
 
@@ -48,7 +52,7 @@ TEST_CASE("svg length: every unit of CSS is what an inch of 96 px makes it") {
                                    {"6em", 96.0},
                                    {"50%", 100.0},
                                    {" 1IN ", 96.0}}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         const auto length = parse_length(text);
         REQUIRE(length);
         CHECK(length->px(200.0) == doctest::Approx(px).epsilon(1e-14));

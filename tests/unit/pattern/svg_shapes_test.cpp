@@ -78,6 +78,28 @@ TEST_CASE("svg stroke: joins at a right angle differ by what geometry says") {
     CHECK(stroked("d='M10 10h50v50h-50V10' stroke-width='2'") == doctest::Approx(400.0 - 1.0).epsilon(1e-9));
 }
 
+TEST_CASE("svg stroke: a smooth curve has no spikes, however sharply it turns") {
+    // There and back with a turn of 1 um: as good as a half circle at the pen's edge, not a miter or a bevel.
+    for (const char* turn : {"C50 30.0001 50 30.0009 10 30.001", "A40 0.0005 0 0 1 10 30.001"}) {
+        for (const char* join : {"miter", "bevel", "round"}) {
+            CAPTURE(std::string(turn));
+            CAPTURE(std::string(join));
+            const Shape shape =
+                one("<path fill='none' stroke='red' stroke-width='4' stroke-miterlimit='100' "
+                    "d='M10 30" +
+                    std::string(turn) + "' stroke-linejoin='" + join + "'/>");
+            const double tip = turn[0] == 'C' ? 40.0 : 50.0;
+            CHECK(extent(shape.stroked).right == doctest::Approx(tip + 2.0).epsilon(5e-4));
+            CHECK(area(shape.stroked) == doctest::Approx(4.0 * (tip - 10.0) + 2 * pi).epsilon(1e-3));
+        }
+    }
+    // Dashes and caps go on around such turns.
+    const double along = stroked(
+        "d='M10 30C50 30.0001 50 30.0009 10 30.001' stroke-width='4' "
+        "stroke-dasharray='25 10' stroke-dashoffset='-17.5' stroke-linecap='square'");
+    CHECK(along == doctest::Approx(4.0 * (11.5 + 14.5) + 2 * pi).epsilon(1e-3));
+}
+
 TEST_CASE("svg stroke: a circle's stroke is a ring") {
     const Shape shape = one("<circle cx='50' cy='50' r='20' fill='none' stroke='red' stroke-width='2'/>",
                             {.flatten_tolerance_mm = 0.001});

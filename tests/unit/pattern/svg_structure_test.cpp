@@ -148,7 +148,7 @@ TEST_CASE("svg structure: what is not printed is listed with id and line, defini
           "drawing.svg:6: rect 'r': filter url(#f) is ignored",
           "drawing.svg:7: path 'p': its markers are not printed",
           "drawing.svg:8: rectt 'typo': is no element that can be printed"}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         CHECK(svg_text::warns(drawing, text));
     }
     CHECK(drawing.warnings.size() == 8);

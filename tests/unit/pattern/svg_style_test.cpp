@@ -85,7 +85,7 @@ TEST_CASE("svg style: what nobody sees is not printed") {
           "display='none'", "visibility='hidden'", "style='display:none'", "style='visibility:collapse'",
           "fill='none' stroke='red' stroke-width='0'", "fill='none' stroke='red' stroke-opacity='0'",
           "transform='scale(0)'", "fill='none' stroke='red' transform='scale(1 0)'"}) {
-        CAPTURE(attributes);
+        CAPTURE(std::string(attributes));
         const Drawing drawing = svg_text::draw(rectangle(attributes));
         CHECK(drawing.shapes.empty());
         REQUIRE(drawing.warnings.size() == 1);
@@ -107,7 +107,7 @@ TEST_CASE("svg style: a value that cannot be read is ignored with a warning") {
     CHECK(drawing.shapes.at(0).stroke_width == doctest::Approx(2.0));
     for (const char* text : {"stroke-width: '-3'", "stroke-linecap: 'pointy'", "fill: 'rad'",
                              "stroke-dasharray: '1 x'", "transform: 'rotte(3)'"}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         CHECK(svg_text::warns(drawing, text));
     }
 }
@@ -122,7 +122,7 @@ TEST_CASE("svg style: a gradient of one colour is that colour, others are not pr
     CHECK(fill_of(defs + rectangle("style=\"fill:url('#used')\"")) == "#123456");
     CHECK(fill_of(defs + rectangle("fill='url(#missing) #00ff00'")) == "#00ff00");
     for (const char* paint : {"url(#blend)", "url(#dots)", "url(#missing)", "url(#dots) red"}) {
-        CAPTURE(paint);
+        CAPTURE(std::string(paint));
         const Drawing drawing = svg_text::draw(defs + rectangle("fill='" + std::string(paint) + "'"));
         CHECK(drawing.shapes.empty());
         CHECK(svg_text::warns(drawing, "rect 'r': the fill is no plain colour"));

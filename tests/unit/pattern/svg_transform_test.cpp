@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <string>
 
 #include "ruche/pattern/svg_transform.hpp"
 
@@ -8,7 +9,7 @@ using namespace ruche;
 using namespace ruche::svg;
 
 static void check_maps(const char* text, const Vec2& from, const Vec2& to) {
-    CAPTURE(text);
+    CAPTURE(std::string(text));
     const auto map = parse_transform(text);
     REQUIRE(map);
     CHECK((*map * from - to).norm() < 1e-12);
@@ -46,7 +47,7 @@ TEST_CASE("svg transform: what cannot be read is none") {
     for (const char* text :
          {"rotte(4)", "scale", "scale(", "scale()", "scale(1 2 3)", "matrix(1 0 0 1 0)", "translate(1 mm)",
           "rotate(1 2)", "scale(nan)", "scale(1e999)", "rotate(3) x", "scale(1e300) scale(1e300)"}) {
-        CAPTURE(text);
+        CAPTURE(std::string(text));
         CHECK_FALSE(parse_transform(text));
     }
 }
@@ -73,14 +74,14 @@ TEST_CASE("svg viewBox: preserveAspectRatio places it as SVG's table says") {
                                                            {"xMinYMax slice", {0, 0}, 4, 4},
                                                            {"xMaxYMin slice", {-200, 0}, 4, 4},
                                                            {"defer xMinYMin", {0, 0}, 2, 2}}) {
-        CAPTURE(aspect);
+        CAPTURE(std::string(aspect));
         const auto map = fit_view_box(box, {200, 200}, aspect);
         REQUIRE(map);
         CHECK((*map * Vec2(10, 20) - corner).norm() < 1e-12);
         CHECK((*map * Vec2(110, 70) - corner - Vec2(100 * x_scale, 50 * y_scale)).norm() < 1e-12);
     }
     for (const char* aspect : {"xMid", "xMidYmid", "middle", "xMidYMid fill", "xMidYMid meet x"}) {
-        CAPTURE(aspect);
+        CAPTURE(std::string(aspect));
         CHECK_FALSE(fit_view_box(box, {200, 200}, aspect));
     }
     CHECK_FALSE(parse_view_box("0 0 100"));
