@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ruche/core/fields.hpp"
+#include "ruche/energy/assembly.hpp"
 #include "ruche/geometry/triangle_mesh.hpp"
 #include "ruche/material/material.hpp"
 #include "ruche/meshing/print_mesh.hpp"
@@ -61,6 +62,73 @@ struct ModelInput {
     std::vector<NodalForce> forces;
     Table table;
     ModelOptions options;
+};
+
+/// Energy by term, mJ.
+struct EnergyTerms {
+    double fabric_membrane = 0.0;
+    double fabric_bending = 0.0;
+    double plastic = 0.0;  ///< the whole laminate, its fabric ply included
+    double gravity = 0.0;  ///< with dead forces and the table
+    double total() const { return fabric_membrane + fabric_bending + plastic + gravity; }
+};
+
+/// What a careful reader of a result has to know about a state.
+struct Health {
+    double max_strain_margin = 0.0;  ///< max over bare fabric of E_ii - gamma_i (negative: inside the law)
+    int beyond_law = 0;              ///< bare elements in the law's linear extension
+    double min_area_ratio = 1.0;     ///< smallest area over rest area (relaxed fabric; layout where printed)
+    double max_dihedral_deg = 0.0;
+    double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
+    int self_intersections = 0;          ///< pairs of triangles that pass through each other
+};
+
+/// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
+/// (mm), then one y per edge between two printed triangles when edge normals are free (mm; in the order of
+/// find_edges). Const member functions may be called from several threads.
+class Model {
+  public:
+    /// Throws InputError for an empty or inverted mesh, a print of the wrong size, or material values without
+    /// meaning.
+    explicit Model(ModelInput input);
+    ~Model();
+    Model(Model&&) noexcept;
+    Model& operator=(Model&&) noexcept;
+
+    int size() const;
+    int vertex_count() const;
+    const ModelInput& input() const;
+    const MeshEdges& edges() const;
+    const NodePattern& pattern() const;
+    /// Ends of the k-th edge unknown's edge and the two vertices opposite it.
+    std::array<int, 4> vertices_of_edge_unknown(int k) const;
+
+    /// Flat as printed, without noise; edge unknowns zero.
+    Eigen::VectorXd initial() const;
+
+    /// Energy, and in `sums` the gradient (N) and the Hessian's values on `pattern()` (N/mm) as far as
+    /// `order` asks. Non-finite when a bare element is inverted. `sums` is resized when needed, so keep it
+    /// between calls.
+    EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
+
+    EnergyTerms energy_terms(const Eigen::VectorXd& x) const;
+    double energy(const Eigen::VectorXd& x) const { return energy_terms(x).total(); }
+    Eigen::VectorXd gradient(const Eigen::VectorXd& x) const;
+    Eigen::SparseMatrix<double> hessian(const Eigen::VectorXd& x) const;  ///< full, symmetric
+
+    /// Elastic energy of each triangle per area of layout (membrane or laminate, without hinges), mJ/mm^2.
+    std::vector<double> energy_density(const Eigen::VectorXd& x) const;
+
+    /// What a residual is to be compared with: root mean square over elements and corners of the internal
+    /// force, N.
+    double typical_force(const Eigen::VectorXd& x) const;
+
+    /// Everything in Health but self-intersections.
+    Health health(const Eigen::VectorXd& x) const;
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
 };
 
 }  // namespace ruche

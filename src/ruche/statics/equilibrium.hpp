@@ -22,24 +22,6 @@ struct SolveOptions {
 template <>
 std::span<const Field<SolveOptions>> fields<SolveOptions>();
 
-struct EnergyTerms {
-    double fabric_membrane = 0.0;  ///< mJ
-    double fabric_bending = 0.0;
-    double plastic = 0.0;  ///< the whole laminate, its fabric ply included
-    double gravity = 0.0;  ///< with dead forces and the table's reaction potential
-    double total() const { return fabric_membrane + fabric_bending + plastic + gravity; }
-};
-
-/// What a careful reader of a result has to know.
-struct Health {
-    double max_strain_margin = 0.0;  ///< max over bare fabric of E_ii - gamma_i (negative: inside the law)
-    double min_area_ratio = 1.0;     ///< smallest current / relaxed-fabric area ratio J
-    double max_dihedral_deg = 0.0;
-    double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
-    int beyond_law = 0;                  ///< elements in the law's linear extension
-    int self_intersections = 0;          ///< pairs of triangles that pass through each other
-};
-
 enum class SolveStatus { converged, not_converged, interrupted };
 
 struct Equilibrium {
@@ -55,5 +37,13 @@ struct Equilibrium {
     Health health;
     std::string message;  ///< why it stopped, for a person
 };
+
+/// Finds a strict local minimum of the energy modulo the rigid motions that nothing resists: Newton's method
+/// with the exact Hessian, the Gauss-Newton form while the sheet turns, steps along the rotation-strain
+/// retraction, and the exact Cholesky factor as certificate; where that fails it leaves the saddle along the
+/// direction of negative curvature. Starts from `start` (all unknowns) or from the flat printed state with a
+/// little noise. Throws InputError for gravity that nothing holds, std::bad_alloc.
+[[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options = {},
+                                const Control& control = {}, const Eigen::VectorXd* start = nullptr);
 
 }  // namespace ruche

@@ -1,0 +1,199 @@
+#include "ruche/energy/laminate_term.hpp"
+
+#include <Eigen/LU>
+#include <cmath>
+
+namespace ruche {
+namespace {
+
+/// (a11, a12, a22, b11, b12, b22) from (L0, L1, L2, c0, c1, c2).
+FormMatrix forms_of_strains() {
+    FormMatrix t = FormMatrix::Zero();
+    t(0, 2) = 1.0;
+    t(1, 0) = -0.5;
+    t(1, 1) = 0.5;
+    t(1, 2) = 0.5;
+    t(2, 1) = 1.0;
+    t(3, 3) = 2.0;
+    t(3, 4) = 2.0;
+    t(4, 3) = 2.0;
+    t(5, 3) = 2.0;
+    t(5, 5) = 2.0;
+    return t;
+}
+
+/// Replaces variable `index` of a quadratic energy by the value of least energy.
+void eliminate(int index, FormMatrix& quadratic, FormVector& linear, double& constant) {
+    const double pivot = quadratic(index, index);
+    const FormVector column = quadratic.col(index);
+    constant -= 0.5 * linear[index] * linear[index] / pivot;
+    linear -= column * (linear[index] / pivot);
+    quadratic -= column * column.transpose() / pivot;
+    linear[index] = 0.0;
+    quadratic.row(index).setZero();
+    quadratic.col(index).setZero();
+}
+
+}  // namespace
+
+LaminateTerm::LaminateTerm(double poissons_ratio, const std::vector<Element>& elements) {
+    const FormMatrix to_forms = forms_of_strains();
+    elements_.reserve(elements.size());
+    for (const Element& element : elements) {
+        const auto& p = element.layout;
+        const Vec2 e1 = p[1] - p[0];
+        const Vec2 e2 = p[2] - p[0];
+        Mat2 layout_metric;
+        layout_metric << e1.squaredNorm(), e1.dot(e2), e1.dot(e2), e2.squaredNorm();
+        const LaminateForm form = laminate_form(element.plies, poissons_ratio, layout_metric);
+        Prepared prepared;
+        prepared.layout_lengths = {(p[2] - p[1]).squaredNorm(), e2.squaredNorm(), e1.squaredNorm()};
+        // The triangle is half of the parametric unit square.
+        prepared.quadratic = 0.5 * (to_forms.transpose() * form.quadratic * to_forms);
+        prepared.linear = 0.5 * (to_forms.transpose() * form.linear);
+        prepared.constant = 0.5 * form.constant;
+        for (int i = 0; i < 3; ++i) {
+            const EdgeSide& side = element.sides[i];
+            const bool hinged = side.kind == EdgeSide::Kind::hinged;
+            prepared.nodes[i] = element.vertices[i];
+            prepared.nodes[3 + i] = hinged ? side.flap : -1;
+            prepared.nodes[6 + i] = hinged ? side.unknown : -1;
+            prepared.y_to_xi[i] = prepared.nodes[6 + i] >= 0 ? side.sign / side.mean_altitude : 0.0;
+            if (side.kind == EdgeSide::Kind::free_rim) {
+                eliminate(3 + i, prepared.quadratic, prepared.linear, prepared.constant);
+            }
+        }
+        elements_.push_back(prepared);
+    }
+}
+
+struct LaminateTerm::Kinematics {
+    Corners v;
+    std::array<bool, 3> hinged;
+    std::array<DihedralFrame, 3> own;   // of this triangle at edge i: corners (i+1, i+2, i)
+    std::array<DihedralFrame, 3> flap;  // of the neighbour: corners (i+2, i+1, flap)
+    Vec3 lengths;                       // L
+    Vec3 altitude = Vec3::Zero();       // h_i
+    Vec3 phi = Vec3::Zero();            // theta_i/2 +- xi_i
+};
+
+LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unknowns& x) const {
+    Kinematics k;
+    k.v = {x.position(e.nodes[0]), x.position(e.nodes[1]), x.position(e.nodes[2])};
+    k.lengths = squared_edge_lengths(k.v);
+    for (int i = 0; i < 3; ++i) {
+        k.hinged[i] = e.nodes[3 + i] >= 0;
+        if (!k.hinged[i]) continue;
+        const Vec3& start = k.v[(i + 1) % 3];
+        const Vec3& end = k.v[(i + 2) % 3];
+        k.own[i] = dihedral_frame(start, end, k.v[i]);
+        k.flap[i] = dihedral_frame(end, start, x.position(e.nodes[3 + i]));
+        k.altitude[i] = k.own[i].h;
+        const double xi =
+            e.nodes[6 + i] >= 0 ? e.y_to_xi[i] * x.edge_unknown(e.nodes[6 + i] - x.vertex_count) : 0.0;
+        k.phi[i] = 0.5 * dihedral_angle(k.own[i], k.flap[i]) + xi;
+    }
+    return k;
+}
+
+double LaminateTerm::max_normal_rotation(int element, const Unknowns& x) const {
+    return kinematics(elements_[element], x).phi.cwiseAbs().maxCoeff();
+}
+
+Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) const {
+    const Prepared& e = elements_[element];
+    const Kinematics k = kinematics(e, x);
+    Vec3 sine = Vec3::Zero();
+    FormVector strain;
+    strain.head<3>() = k.lengths - e.layout_lengths;
+    for (int i = 0; i < 3; ++i) {
+        sine[i] = std::sin(k.phi[i]);
+        strain[3 + i] = k.altitude[i] * sine[i];
+    }
+    const FormVector pull = e.quadratic * strain;
+    Local<21> local;
+    local.value = e.constant + strain.dot(e.linear + 0.5 * pull);
+    if (order == Order::value) return local;
+
+    // Derivatives in the strain space (L, phi). h_i = 2A / sqrt(L_i), 16 A^2 = 2 (L0 L1 + L1 L2 + L2 L0) -
+    // sum L^2, so with p_j = d(16 A^2)/dL_j: d ln h_i / dL_j = g_ij = p_j / (32 A^2) - delta_ij / (2 L_i).
+    const FormVector stress = e.linear + pull;
+    const Vec3 moment = stress.tail<3>();  // dW/dc
+    const double sum = k.lengths.sum();
+    const Vec3 p = Vec3::Constant(2.0 * sum) - 4.0 * k.lengths;
+    const double area16 = sum * sum - 2.0 * k.lengths.squaredNorm();  // 16 A^2
+    Mat3 log_slope = Mat3::Zero();                                    // g, row i: edge i
+    Vec3 c = strain.tail<3>();
+    Vec3 c_phi = Vec3::Zero();  // dc_i/dphi_i
+    for (int i = 0; i < 3; ++i) {
+        if (!k.hinged[i]) continue;
+        log_slope.row(i) = (p / (2.0 * area16)).transpose();
+        log_slope(i, i) -= 0.5 / k.lengths[i];
+        c_phi[i] = k.altitude[i] * std::cos(k.phi[i]);
+    }
+    const Mat3 c_lengths = c.asDiagonal() * log_slope;  // dc_i/dL_j
+    FormVector slopes;
+    slopes.head<3>() = stress.head<3>() + c_lengths.transpose() * moment;
+    slopes.tail<3>() = c_phi.cwiseProduct(moment);
+
+    Eigen::Matrix<double, 6, 21> measures = Eigen::Matrix<double, 6, 21>::Zero();
+    measures.topLeftCorner<3, 9>() = edge_length_gradient(k.v);
+    for (int i = 0; i < 3; ++i) {
+        if (!k.hinged[i]) continue;
+        const int own_slot[3] = {(i + 1) % 3, (i + 2) % 3, i};
+        const int flap_slot[3] = {(i + 2) % 3, (i + 1) % 3, 3 + i};
+        for (int j = 0; j < 3; ++j) {
+            measures.block<1, 3>(3 + i, 3 * own_slot[j]) += 0.5 * k.own[i].gradient(j).transpose();
+            measures.block<1, 3>(3 + i, 3 * flap_slot[j]) += 0.5 * k.flap[i].gradient(j).transpose();
+        }
+        measures(3 + i, 18 + i) = e.y_to_xi[i];
+    }
+    local.gradient.noalias() = measures.transpose() * slopes;
+    if (!wants_hessian(order)) return local;
+
+    FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
+    jacobian.bottomLeftCorner<3, 3>() = c_lengths;
+    jacobian.bottomRightCorner<3, 3>() = c_phi.asDiagonal();
+    FormMatrix in_measures = jacobian.transpose() * e.quadratic * jacobian;
+    if (order == Order::hessian) {
+        // Second derivatives of c_i = h_i(L) sin(phi_i), weighted with the moments:
+        // d2 h_i / h_i = g g^T + dg,  dg_jk = d2(16A^2)_jk / (32 A^2) - p_j p_k / (2 (16A^2)^2) + delta_ijk /
+        // (2 L_i^2).
+        Mat3 area_curvature = Mat3::Constant(2.0);
+        area_curvature.diagonal().setConstant(-2.0);
+        const Mat3 log_curvature =
+            area_curvature / (2.0 * area16) - p * p.transpose() / (2.0 * area16 * area16);
+        for (int i = 0; i < 3; ++i) {
+            if (!k.hinged[i]) continue;
+            const Vec3 g = log_slope.row(i).transpose();
+            Mat3 second = g * g.transpose() + log_curvature;
+            second(i, i) += 0.5 / (k.lengths[i] * k.lengths[i]);
+            in_measures.topLeftCorner<3, 3>() += moment[i] * c[i] * second;
+            in_measures.block<3, 1>(0, 3 + i) += moment[i] * c_phi[i] * g;
+            in_measures.block<1, 3>(3 + i, 0) += moment[i] * c_phi[i] * g.transpose();
+            in_measures(3 + i, 3 + i) -= moment[i] * c[i];
+        }
+    }
+    const Eigen::Matrix<double, 6, 21> weighted = in_measures * measures;
+    local.hessian.noalias() = measures.transpose() * weighted;
+    if (order == Order::gauss_newton) return local;
+
+    add_edge_length_curvature(slopes.head<3>(), local.hessian);
+    for (int i = 0; i < 3; ++i) {
+        if (!k.hinged[i]) continue;
+        const int own_slot[3] = {(i + 1) % 3, (i + 2) % 3, i};
+        const int flap_slot[3] = {(i + 2) % 3, (i + 1) % 3, 3 + i};
+        const double half = 0.5 * slopes[3 + i];
+        for (int r = 0; r < 3; ++r) {
+            for (int s = 0; s < 3; ++s) {
+                local.hessian.block<3, 3>(3 * own_slot[r], 3 * own_slot[s]) +=
+                    half * k.own[i].second_derivative(r, s);
+                local.hessian.block<3, 3>(3 * flap_slot[r], 3 * flap_slot[s]) +=
+                    half * k.flap[i].second_derivative(r, s);
+            }
+        }
+    }
+    return local;
+}
+
+}  // namespace ruche

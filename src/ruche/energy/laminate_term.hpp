@@ -1,0 +1,70 @@
+#pragma once
+
+#include <vector>
+
+#include "ruche/energy/term.hpp"
+#include "ruche/material/laminate.hpp"
+
+namespace ruche {
+
+/// Energy of plastic on fabric (paper eq. 8 with true layer thicknesses; see material/laminate.hpp), with
+///
+///     a = [[L2, (L1+L2-L0)/2], [., L1]],   b = 2 [[c0+c1, c0], [c0, c0+c2]],   c_i = h_i sin(theta_i/2 +-
+///     xi_i)
+///
+/// h_i is the current altitude onto edge i, theta_i the dihedral angle and xi_i = y_i / l_i the rotation of
+/// the midedge normal about the edge (free edge normals; + in the first triangle of an edge, - in the
+/// second). An edge without a second normal is either eliminated (free rim: its c_i takes the value of least
+/// energy, a constant Schur complement because the energy is quadratic in c) or held at c_i = 0.
+class LaminateTerm {
+  public:
+    static constexpr std::string_view name = "plastic";
+    static constexpr int vertex_slots = 6;
+    static constexpr int edge_slots = 3;
+
+    /// What happens at each edge of a printed triangle.
+    struct EdgeSide {
+        enum class Kind {
+            hinged,      ///< `flap` is the neighbour's opposite vertex
+            free_rim,    ///< c is eliminated
+            clamped_rim  ///< c = 0: the face's own normal (the paper's operator on an outer boundary)
+        } kind = Kind::free_rim;
+        int flap = -1;             ///< vertex
+        int unknown = -1;          ///< node number of y, -1 = averaged normals (xi = 0)
+        double sign = 1.0;         ///< of xi in this triangle
+        double mean_altitude = 1;  ///< l_e, mm
+    };
+
+    /// A printed triangle: corners in the layout (mm), plies in the basis (v1 - v0, v2 - v0) of the layout.
+    struct Element {
+        std::array<int, 3> vertices;
+        std::array<Vec2, 3> layout;
+        std::array<EdgeSide, 3> sides;
+        std::vector<Ply> plies;
+    };
+
+    LaminateTerm(double poissons_ratio, const std::vector<Element>& elements);
+
+    int element_count() const { return static_cast<int>(elements_.size()); }
+    std::array<int, 9> nodes(int element) const { return elements_[element].nodes; }
+    Local<21> evaluate(int element, const Unknowns& x, Order order) const;
+
+    /// max over the edges of |theta/2 +- xi|, which must stay below pi/2.
+    double max_normal_rotation(int element, const Unknowns& x) const;
+
+  private:
+    struct Prepared {
+        std::array<int, 9> nodes;       // v0 v1 v2, flaps, edge unknowns; -1 = none
+        std::array<double, 3> y_to_xi;  // sign / l_e, or 0
+        Vec3 layout_lengths;            // squared
+        FormMatrix quadratic;           // in (L - L_layout, c), free rims eliminated
+        FormVector linear;
+        double constant;
+    };
+    struct Kinematics;
+    Kinematics kinematics(const Prepared& element, const Unknowns& x) const;
+
+    std::vector<Prepared> elements_;
+};
+
+}  // namespace ruche

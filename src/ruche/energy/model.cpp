@@ -1,0 +1,392 @@
+#include "ruche/energy/model.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "ruche/core/error.hpp"
+#include "ruche/energy/fabric_bending.hpp"
+#include "ruche/energy/fabric_membrane.hpp"
+#include "ruche/energy/laminate_term.hpp"
+#include "ruche/energy/loads.hpp"
+
+namespace ruche {
+namespace {
+
+/// From the layout's axes on the frame to the relaxed fabric in fabric axes.
+Mat2 relaxation(const ModelInput& input) {
+    const double phi = input.fabric_axis_deg * std::numbers::pi / 180.0;
+    Mat2 to_fabric_axes;
+    to_fabric_axes << std::cos(phi), std::sin(phi), -std::sin(phi), std::cos(phi);
+    return Vec2(1.0 / input.prestretch[0], 1.0 / input.prestretch[1]).asDiagonal() * to_fabric_axes;
+}
+
+std::array<Vec2, 3> layout_corners(const TriangleMesh& mesh, int t) {
+    const Triangle& tri = mesh.triangles[t];
+    return {mesh.vertices[tri[0]], mesh.vertices[tri[1]], mesh.vertices[tri[2]]};
+}
+
+/// Triangles in the order of a space-filling curve (Morton), so that neighbours in memory are neighbours in
+/// space whatever order the mesh came in.
+std::vector<int> spatial_order(const TriangleMesh& mesh) {
+    Vec2 low = Vec2::Constant(infinity);
+    Vec2 high = Vec2::Constant(-infinity);
+    for (const Vec2& p : mesh.vertices) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double cells = 65535.0 / std::max(1e-300, (high - low).maxCoeff());
+    const auto spread = [](std::uint32_t v) {
+        std::uint64_t s = v;
+        s = (s | (s << 8U)) & 0x00ff00ffU;
+        s = (s | (s << 4U)) & 0x0f0f0f0fU;
+        s = (s | (s << 2U)) & 0x33333333U;
+        return (s | (s << 1U)) & 0x55555555U;
+    };
+    std::vector<std::uint64_t> key(mesh.triangles.size());
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const auto p = layout_corners(mesh, t);
+        const Vec2 cell = ((p[0] + p[1] + p[2]) / 3.0 - low) * cells;
+        key[t] = spread(static_cast<std::uint32_t>(cell.x())) | spread(static_cast<std::uint32_t>(cell.y()))
+                                                                    << 1U;
+    }
+    std::vector<int> order(mesh.triangles.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
+    return order;
+}
+
+void check(const ModelInput& input) {
+    const TriangleMesh& mesh = input.mesh;
+    const auto fail = [](const std::string& key, const std::string& problem, const std::string& advice) {
+        throw InputError({.key = key}, problem, advice);
+    };
+    if (mesh.triangles.empty()) fail("mesh", "there are no triangles", "A sheet needs at least one.");
+    if (input.print.size() != mesh.triangles.size()) {
+        fail("print",
+             std::to_string(input.print.size()) + " values for " + std::to_string(mesh.triangles.size()) +
+                 " triangles",
+             "Give the printed thickness of every triangle, 0 for bare fabric.");
+    }
+    for (const Vec2& p : mesh.vertices) {
+        if (!p.allFinite()) fail("mesh", "a vertex is not finite", "Coordinates are numbers in mm.");
+    }
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const std::string key = "mesh triangle " + std::to_string(t);
+        for (const int v : mesh.triangles[t]) {
+            if (v < 0 || v >= mesh.vertex_count())
+                fail(key, "refers to vertex " + std::to_string(v), "Vertices are numbered from 0.");
+        }
+        if (!(layout_area(mesh, t) > 0.0)) {
+            fail(key, "is inverted or has no area",
+                 "Triangles are counter-clockwise seen from the printed side.");
+        }
+        const Print& print = input.print[t];
+        for (const double value : {print.front, print.back, print.front_modulus, print.back_modulus}) {
+            if (!(value >= 0.0) || !std::isfinite(value))
+                fail(key, "has a print that is not a number >= 0", "Thickness is in mm, modulus in MPa.");
+        }
+    }
+    for (const double s : input.prestretch) {
+        if (!(s > 0.0) || !std::isfinite(s))
+            fail("prestretch", "must be positive", "Length on the frame over relaxed length.");
+    }
+    for (const Support& support : input.supports) {
+        if (support.vertex < 0 || support.vertex >= mesh.vertex_count())
+            fail("support", "refers to vertex " + std::to_string(support.vertex), "");
+    }
+    for (const NodalForce& force : input.forces) {
+        if (force.vertex < 0 || force.vertex >= mesh.vertex_count())
+            fail("force", "refers to vertex " + std::to_string(force.vertex), "");
+    }
+}
+
+std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& layout_metric,
+                       const Mat2& fabric_metric) {
+    const Material& m = input.material;
+    // The paper's eq. 8, read literally, has the coefficients of layers half as thick.
+    const double scale = input.options.laminate_thickness == LaminateThickness::as_printed ? 0.5 : 1.0;
+    return printed_plies(
+        {.front = scale * print.front,
+         .back = scale * print.back,
+         .fabric = scale * m.fabric_thickness,
+         .front_modulus = print.front_modulus > 0.0 ? print.front_modulus : m.plastic_youngs_modulus,
+         .back_modulus = print.back_modulus > 0.0 ? print.back_modulus : m.plastic_youngs_modulus,
+         .fabric_modulus = m.fabric_youngs_modulus},
+        layout_metric, fabric_metric);
+}
+
+/// Hinges and the edge sides of printed triangles, as the choice of edge normals has it.
+struct EdgeRoles {
+    std::vector<FabricBending::Hinge> hinges;
+    std::vector<std::array<LaminateTerm::EdgeSide, 3>> sides;  // per triangle
+    std::vector<std::array<int, 4>>
+        unknowns;  // per edge unknown: its edge's ends and the two opposite vertices
+};
+
+EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
+    using Kind = LaminateTerm::EdgeSide::Kind;
+    const TriangleMesh& mesh = input.mesh;
+    const Mat2 relax = relaxation(input);
+    const bool free = input.options.edge_normals == EdgeNormals::free;
+    const bool plate = input.options.bending_normalisation == BendingNormalisation::plate;
+    const double stiffness = input.material.fabric_bending_stiffness * (plate ? 1.0 : 6.0);
+    EdgeRoles roles;
+    roles.sides.resize(mesh.triangles.size());
+    for (const Edge& edge : edges.edges) {
+        const int t0 = edge.triangle[0];
+        const int t1 = edge.triangle[1];
+        const bool bare0 = input.print[t0].bare();
+        if (edge.on_boundary()) {
+            if (!bare0) roles.sides[t0][edge.local[0]].kind = free ? Kind::free_rim : Kind::clamped_rim;
+            continue;
+        }
+        const bool bare1 = input.print[t1].bare();
+        const int opposite[2] = {mesh.triangles[t0][edge.local[0]], mesh.triangles[t1][edge.local[1]]};
+        const Vec2 along = mesh.vertices[edge.vertex[1]] - mesh.vertices[edge.vertex[0]];
+        const double area = layout_area(mesh, t0) + layout_area(mesh, t1);
+        if (bare0 || bare1) {
+            const double rest_length2 = (relax * along).squaredNorm();
+            const double rest_area = area * relax.determinant();
+            roles.hinges.push_back({{edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]},
+                                    stiffness * rest_length2 / rest_area});
+            if (free) continue;  // rims of free edge normals keep their default, free_rim
+        }
+        const bool unknown = free && !bare0 && !bare1;
+        const int node = unknown ? mesh.vertex_count() + static_cast<int>(roles.unknowns.size()) : -1;
+        if (unknown) roles.unknowns.push_back({edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]});
+        for (int side = 0; side < 2; ++side) {
+            if (side == 0 ? bare0 : bare1) continue;
+            roles.sides[edge.triangle[side]][edge.local[side]] = {.kind = Kind::hinged,
+                                                                  .flap = opposite[1 - side],
+                                                                  .unknown = node,
+                                                                  .sign = side == 0 ? 1.0 : -1.0,
+                                                                  .mean_altitude = area / along.norm()};
+        }
+    }
+    return roles;
+}
+
+}  // namespace
+
+struct Model::Parts {
+    ModelInput input;
+    MeshEdges edges;
+    std::vector<int> bare;                          // triangle of each membrane element
+    std::vector<int> printed;                       // triangle of each laminate element
+    std::vector<std::array<int, 4>> edge_unknowns;  // vertices around each
+    NodePattern pattern;
+    std::unique_ptr<TermAssembly<FabricMembrane>> membrane;
+    std::unique_ptr<TermAssembly<FabricBending>> bending;
+    std::unique_ptr<TermAssembly<LaminateTerm>> laminate;
+    std::unique_ptr<TermAssembly<TableContact>> table;
+    Eigen::VectorXd dead_load;  // N, on positions: gravity and nodal forces
+
+    Unknowns unknowns(const Eigen::VectorXd& x) const { return {x.data(), input.mesh.vertex_count()}; }
+
+    void build_elastic_terms();
+    void build_loads();
+};
+
+void Model::Parts::build_elastic_terms() {
+    const TriangleMesh& mesh = input.mesh;
+    const Material& m = input.material;
+    const Mat2 relax = relaxation(input);
+    const EdgeRoles roles = edge_roles(input, edges);
+    edge_unknowns = roles.unknowns;
+    std::vector<FabricMembrane::Element> membranes;
+    std::vector<LaminateTerm::Element> laminates;
+    for (const int t : spatial_order(mesh)) {
+        const auto p = layout_corners(mesh, t);
+        const std::array<Vec2, 3> relaxed = {relax * p[0], relax * p[1], relax * p[2]};
+        if (input.print[t].bare()) {
+            bare.push_back(t);
+            membranes.push_back({mesh.triangles[t], relaxed});
+            continue;
+        }
+        Mat2 layout_edges;
+        layout_edges << p[1] - p[0], p[2] - p[0];
+        const Mat2 fabric_edges = relax * layout_edges;
+        printed.push_back(t);
+        laminates.push_back({mesh.triangles[t], p, roles.sides[t],
+                             plies(input, input.print[t], layout_edges.transpose() * layout_edges,
+                                   fabric_edges.transpose() * fabric_edges)});
+    }
+    const FabricLaw law(m, {.log_extension = input.options.log_extension,
+                            .tensor_shear = input.options.shear_strain == ShearStrain::tensor});
+    membrane =
+        std::make_unique<TermAssembly<FabricMembrane>>(FabricMembrane(law, m.fabric_thickness, membranes));
+    bending = std::make_unique<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
+    laminate =
+        std::make_unique<TermAssembly<LaminateTerm>>(LaminateTerm(m.laminate_poissons_ratio, laminates));
+}
+
+void Model::Parts::build_loads() {
+    const TriangleMesh& mesh = input.mesh;
+    const Material& m = input.material;
+    constexpr double tonne_per_mm2 = 1e-9;   // of 1 kg/m^2
+    constexpr double tonne_per_mm3 = 1e-12;  // of 1 kg/m^3
+    const double relaxed_share = 1.0 / (input.prestretch[0] * input.prestretch[1]);
+    std::vector<AreaMass> masses;
+    std::vector<AreaMass> areas;
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const double area = layout_area(mesh, t);
+        const double plastic = input.print[t].front + input.print[t].back;
+        const double per_area = m.fabric_areal_density * tonne_per_mm2 * relaxed_share +
+                                m.plastic_density * tonne_per_mm3 * plastic;
+        masses.push_back({mesh.triangles[t], area * per_area});
+        areas.push_back({mesh.triangles[t], area});
+    }
+    const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
+    const Eigen::VectorXd mass = lumped_mass(mesh.vertex_count(), masses);
+    dead_load = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertex_count()));
+    for (int v = 0; v < mesh.vertex_count(); ++v) dead_load.segment<3>(3 * v) = mass[v] * gravity;
+    for (const NodalForce& force : input.forces) dead_load.segment<3>(3 * force.vertex) += force.force;
+
+    std::vector<double> stiffness;
+    if (input.table.present) {
+        const Eigen::VectorXd area = lumped_mass(mesh.vertex_count(), areas);
+        stiffness.assign(area.begin(), area.end());
+        for (double& k : stiffness) k *= input.table.stiffness_per_area;
+    }
+    const Vec3 up = gravity.norm() > 0.0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ();
+    table = std::make_unique<TermAssembly<TableContact>>(
+        TableContact({.up = up, .height = input.table.height}, std::move(stiffness)));
+}
+
+Model::Model(ModelInput input) : parts_(std::make_unique<Parts>()) {
+    if (input.print.empty()) input.print.resize(input.mesh.triangles.size());
+    check(input);
+    parts_->input = std::move(input);
+    parts_->edges = find_edges(parts_->input.mesh);
+    parts_->build_elastic_terms();
+    parts_->build_loads();
+    const NodePattern::Cliques cliques[] = {parts_->membrane->cliques(), parts_->bending->cliques(),
+                                            parts_->laminate->cliques()};
+    parts_->pattern = NodePattern(parts_->input.mesh.vertex_count(),
+                                  static_cast<int>(parts_->edge_unknowns.size()), cliques);
+    parts_->membrane->prepare(parts_->pattern);
+    parts_->bending->prepare(parts_->pattern);
+    parts_->laminate->prepare(parts_->pattern);
+    parts_->table->prepare(parts_->pattern);
+}
+
+Model::~Model() = default;
+Model::Model(Model&&) noexcept = default;
+Model& Model::operator=(Model&&) noexcept = default;
+
+int Model::size() const { return parts_->pattern.unknown_count(); }
+int Model::vertex_count() const { return parts_->input.mesh.vertex_count(); }
+const ModelInput& Model::input() const { return parts_->input; }
+const MeshEdges& Model::edges() const { return parts_->edges; }
+const NodePattern& Model::pattern() const { return parts_->pattern; }
+std::array<int, 4> Model::vertices_of_edge_unknown(int k) const { return parts_->edge_unknowns[k]; }
+
+Eigen::VectorXd Model::initial() const {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+    for (int v = 0; v < vertex_count(); ++v) x.segment<2>(3 * v) = parts_->input.mesh.vertices[v];
+    return x;
+}
+
+EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    if (order != Order::value) sums.gradient.setZero(size());
+    if (wants_hessian(order)) sums.hessian.assign(parts_->pattern.row_index().size(), 0.0);
+    EnergyTerms terms;
+    terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
+    terms.fabric_bending = parts_->bending->add(unknowns, order, sums);
+    terms.plastic = parts_->laminate->add(unknowns, order, sums);
+    terms.gravity = parts_->table->add(unknowns, order, sums);
+    const Eigen::Index positions = parts_->dead_load.size();
+    terms.gravity -= parts_->dead_load.dot(x.head(positions));
+    if (order != Order::value) sums.gradient.head(positions) -= parts_->dead_load;
+    return terms;
+}
+
+EnergyTerms Model::energy_terms(const Eigen::VectorXd& x) const {
+    AssembledSums none;
+    return evaluate(x, Order::value, none);
+}
+
+Eigen::VectorXd Model::gradient(const Eigen::VectorXd& x) const {
+    AssembledSums sums;
+    evaluate(x, Order::gradient, sums);
+    return sums.gradient;
+}
+
+Eigen::SparseMatrix<double> Model::hessian(const Eigen::VectorXd& x) const {
+    AssembledSums sums;
+    evaluate(x, Order::hessian, sums);
+    return parts_->pattern.full_matrix(sums.hessian);
+}
+
+std::vector<double> Model::energy_density(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    std::vector<double> density(parts_->input.mesh.triangles.size(), 0.0);
+    const auto fill = [&](const auto& term, const std::vector<int>& triangle) {
+        for (int e = 0; e < term.element_count(); ++e) {
+            density[triangle[e]] =
+                term.evaluate(e, unknowns, Order::value).value / layout_area(parts_->input.mesh, triangle[e]);
+        }
+    };
+    fill(parts_->membrane->term(), parts_->bare);
+    fill(parts_->laminate->term(), parts_->printed);
+    return density;
+}
+
+double Model::typical_force(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    double sum = 0.0;
+    const auto add = [&](const auto& term) {
+        for (int e = 0; e < term.element_count(); ++e) {
+            sum += term.evaluate(e, unknowns, Order::gradient).gradient.template head<9>().squaredNorm();
+        }
+    };
+    add(parts_->membrane->term());
+    add(parts_->laminate->term());
+    return std::sqrt(sum / (3.0 * parts_->input.mesh.triangle_count()));
+}
+
+Health Model::health(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    const TriangleMesh& mesh = parts_->input.mesh;
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    Health health;
+    health.max_strain_margin = -infinity;
+    const FabricMembrane& membrane = parts_->membrane->term();
+    for (int e = 0; e < membrane.element_count(); ++e) {
+        const Vec3 strain = membrane.green_strain(e, unknowns);
+        bool beyond = false;
+        for (int i = 0; i < 2; ++i) {
+            health.max_strain_margin =
+                std::max(health.max_strain_margin, strain[i] - membrane.law().gamma(i));
+            beyond = beyond || strain[i] > membrane.law().strain_limit(i);
+        }
+        health.beyond_law += beyond ? 1 : 0;
+    }
+    const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const Triangle& tri = mesh.triangles[t];
+        const Vec3 a = unknowns.position(tri[0]);
+        const double area = 0.5 * (unknowns.position(tri[1]) - a).cross(unknowns.position(tri[2]) - a).norm();
+        const double rest = layout_area(mesh, t) * (parts_->input.print[t].bare() ? relaxed_share : 1.0);
+        health.min_area_ratio = std::min(health.min_area_ratio, area / rest);
+    }
+    for (const Edge& edge : parts_->edges.edges) {
+        if (edge.on_boundary()) continue;
+        const Vec3 a = unknowns.position(edge.vertex[0]);
+        const Vec3 b = unknowns.position(edge.vertex[1]);
+        const Vec3 c = unknowns.position(mesh.triangles[edge.triangle[0]][edge.local[0]]);
+        const Vec3 d = unknowns.position(mesh.triangles[edge.triangle[1]][edge.local[1]]);
+        const double theta = dihedral_angle(dihedral_frame(a, b, c), dihedral_frame(b, a, d));
+        health.max_dihedral_deg = std::max(health.max_dihedral_deg, std::abs(theta) * degrees);
+    }
+    const LaminateTerm& laminate = parts_->laminate->term();
+    for (int e = 0; e < laminate.element_count(); ++e) {
+        health.max_edge_rotation_deg =
+            std::max(health.max_edge_rotation_deg, laminate.max_normal_rotation(e, unknowns) * degrees);
+    }
+    return health;
+}
+
+}  // namespace ruche

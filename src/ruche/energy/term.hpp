@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <concepts>
+#include <string_view>
+
+#include "ruche/geometry/strain_measures.hpp"
+
+namespace ruche {
+
+/// How far to differentiate. `gauss_newton` fills the Hessian with its positive semidefinite part only: the
+/// material's tangent in strain space between first derivatives, no second derivatives of the strains.
+enum class Order { value, gradient, hessian, gauss_newton };
+
+constexpr bool wants_hessian(Order order) { return order == Order::hessian || order == Order::gauss_newton; }
+
+/// Value, gradient and Hessian of one element; what was not asked for is zero.
+template <int Size>
+struct Local {
+    double value = 0.0;
+    Eigen::Matrix<double, Size, 1> gradient = Eigen::Matrix<double, Size, 1>::Zero();
+    Eigen::Matrix<double, Size, Size> hessian = Eigen::Matrix<double, Size, Size>::Zero();
+};
+
+/// The unknowns as elements see them. Node v < vertex_count is a vertex (three unknowns); node vertex_count +
+/// k is the k-th edge unknown (one).
+struct Unknowns {
+    const double* x = nullptr;
+    int vertex_count = 0;
+
+    Vec3 position(int vertex) const {
+        return Eigen::Map<const Vec3>(x + 3 * static_cast<std::ptrdiff_t>(vertex));
+    }
+    double edge_unknown(int k) const { return x[3 * static_cast<std::ptrdiff_t>(vertex_count) + k]; }
+};
+
+/// A term of the energy: a sum over elements, each a function of a few nodes. `nodes(element)` lists first
+/// the vertices, then the edge unknowns (by node number), -1 where an element has fewer; local unknowns
+/// follow in that order, three per vertex and one per edge.
+template <class T>
+concept Term = requires(const T& term, int element, const Unknowns& x, Order order) {
+    { T::name } -> std::convertible_to<std::string_view>;
+    { T::vertex_slots } -> std::convertible_to<int>;
+    { T::edge_slots } -> std::convertible_to<int>;
+    { term.element_count() } -> std::same_as<int>;
+    { term.nodes(element) } -> std::same_as<std::array<int, T::vertex_slots + T::edge_slots>>;
+    { term.evaluate(element, x, order) } -> std::same_as<Local<3 * T::vertex_slots + T::edge_slots>>;
+};
+
+/// Adds slope * d2 L_i, the exact second derivative of the squared edge lengths of a triangle, to the first
+/// nine rows and columns of a local Hessian.
+template <class Matrix>
+void add_edge_length_curvature(const Vec3& slopes, Matrix& hessian) {
+    for (int i = 0; i < 3; ++i) {
+        const int p = 3 * ((i + 1) % 3);
+        const int q = 3 * ((i + 2) % 3);
+        for (int c = 0; c < 3; ++c) {
+            hessian(p + c, p + c) += 2.0 * slopes[i];
+            hessian(q + c, q + c) += 2.0 * slopes[i];
+            hessian(p + c, q + c) -= 2.0 * slopes[i];
+            hessian(q + c, p + c) -= 2.0 * slopes[i];
+        }
+    }
+}
+
+/// d L_i / d (v0, v1, v2), one row per edge.
+inline Eigen::Matrix<double, 3, 9> edge_length_gradient(const Corners& v) {
+    Eigen::Matrix<double, 3, 9> gradient = Eigen::Matrix<double, 3, 9>::Zero();
+    for (int i = 0; i < 3; ++i) {
+        const int p = (i + 1) % 3;
+        const int q = (i + 2) % 3;
+        const Vec3 d = 2.0 * (v[p] - v[q]);
+        gradient.block<1, 3>(i, 3 * p) = d.transpose();
+        gradient.block<1, 3>(i, 3 * q) = -d.transpose();
+    }
+    return gradient;
+}
+
+}  // namespace ruche

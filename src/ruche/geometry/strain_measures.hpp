@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+
+#include "ruche/geometry/vectors.hpp"
+
+/// The two strain measures that every energy is a function of, with exact first and second derivatives:
+/// squared edge lengths and signed dihedral angles.
+namespace ruche {
+
+/// Position of the corners of a triangle, counter-clockwise seen from the front.
+using Corners = std::array<Vec3, 3>;
+
+/// L_i = squared length of edge i, which lies opposite corner i. Its derivative with respect to corner i+1 is
+/// 2 (v_{i+1} - v_{i+2}), to corner i+2 the negative; its second derivative is 2 I on the diagonal blocks of
+/// the two corners and -2 I between them.
+inline Vec3 squared_edge_lengths(const Corners& v) {
+    return {(v[2] - v[1]).squaredNorm(), (v[0] - v[2]).squaredNorm(), (v[1] - v[0]).squaredNorm()};
+}
+
+/// The dihedral angle theta across the edge a-b of the triangles (a, b, c) and (b, a, d), both
+/// counter-clockwise seen from the front, is 0 when flat and positive when d rises towards the front (a
+/// valley). Its gradient and its second derivative are each a sum of two parts that live on the corners of
+/// one triangle. With a triangle's corners in the order edge start, edge end, opposite corner, the gradient
+/// with respect to corner i is q_i n / h, and the block of the second derivative between corner i and corner
+/// j is
+///
+///   -[ q_i q_j (u n^T + n u^T) / h^2 + (q_i r_j e n^T + r_i q_j n e^T) / h + r_i r_j (u n^T + n u^T) / 2 ]
+///
+/// e: unit edge direction, n: unit normal, u = n x e, h: altitude onto the edge, t: the altitude's foot as a
+/// fraction of the edge, q = (t-1, -t, 1), r = (-1, 1, 0) / |b - a|. (Derived by differentiating grad theta =
+/// q_i n / h; equivalent to Tamstorf and Grinspun 2013.)
+struct DihedralFrame {
+    Vec3 e, n, u;
+    double h = 1.0;
+    Vec3 q, r;
+
+    Vec3 gradient(int i) const { return (q[i] / h) * n; }
+
+    Mat3 second_derivative(int i, int j) const {
+        const double sym = q[i] * q[j] / (h * h) + 0.5 * r[i] * r[j];
+        const Mat3 un = u * n.transpose();
+        const Mat3 en = e * n.transpose();
+        return -(sym * (un + un.transpose()) + (q[i] * r[j] / h) * en + (r[i] * q[j] / h) * en.transpose());
+    }
+};
+
+/// The frame of triangle (a, b, c) at its edge a-b.
+inline DihedralFrame dihedral_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+    DihedralFrame f;
+    const Vec3 ab = b - a;
+    const Vec3 ac = c - a;
+    const double length = ab.norm();
+    const Vec3 normal = ab.cross(ac);
+    const double twice_area = normal.norm();
+    f.e = ab / length;
+    f.n = normal / twice_area;
+    f.u = f.n.cross(f.e);
+    f.h = twice_area / length;
+    const double t = ac.dot(f.e) / length;
+    f.q = {t - 1.0, -t, 1.0};
+    f.r = {-1.0 / length, 1.0 / length, 0.0};
+    return f;
+}
+
+/// theta from the frames of the two triangles at their common edge.
+inline double dihedral_angle(const DihedralFrame& left, const DihedralFrame& right) {
+    return std::atan2(right.n.cross(left.n).dot(left.e), left.n.dot(right.n));
+}
+
+}  // namespace ruche
