@@ -120,7 +120,8 @@ std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& 
 struct EdgeRoles {
     std::vector<FabricBending::Hinge> hinges;
     std::vector<std::array<LaminateTerm::EdgeSide, 3>> sides;  // per triangle
-    int unknown_count = 0;
+    std::vector<std::array<int, 4>>
+        unknowns;  // per edge unknown: its edge's ends and the two opposite vertices
 };
 
 EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
@@ -152,7 +153,8 @@ EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
             if (free) continue;  // rims of free edge normals keep their default, free_rim
         }
         const bool unknown = free && !bare0 && !bare1;
-        const int node = unknown ? mesh.vertex_count() + roles.unknown_count++ : -1;
+        const int node = unknown ? mesh.vertex_count() + static_cast<int>(roles.unknowns.size()) : -1;
+        if (unknown) roles.unknowns.push_back({edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]});
         for (int side = 0; side < 2; ++side) {
             if (side == 0 ? bare0 : bare1) continue;
             roles.sides[edge.triangle[side]][edge.local[side]] = {.kind = Kind::hinged,
@@ -170,9 +172,9 @@ EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
 struct Model::Parts {
     ModelInput input;
     MeshEdges edges;
-    std::vector<int> bare;     // triangle of each membrane element
-    std::vector<int> printed;  // triangle of each laminate element
-    int edge_unknowns = 0;
+    std::vector<int> bare;                          // triangle of each membrane element
+    std::vector<int> printed;                       // triangle of each laminate element
+    std::vector<std::array<int, 4>> edge_unknowns;  // vertices around each
     NodePattern pattern;
     std::unique_ptr<TermAssembly<FabricMembrane>> membrane;
     std::unique_ptr<TermAssembly<FabricBending>> bending;
@@ -191,7 +193,7 @@ void Model::Parts::build_elastic_terms() {
     const Material& m = input.material;
     const Mat2 relax = relaxation(input);
     const EdgeRoles roles = edge_roles(input, edges);
-    edge_unknowns = roles.unknown_count;
+    edge_unknowns = roles.unknowns;
     std::vector<FabricMembrane::Element> membranes;
     std::vector<LaminateTerm::Element> laminates;
     for (const int t : spatial_order(mesh)) {
@@ -261,7 +263,8 @@ Model::Model(ModelInput input) : parts_(std::make_unique<Parts>()) {
     parts_->build_loads();
     const NodePattern::Cliques cliques[] = {parts_->membrane->cliques(), parts_->bending->cliques(),
                                             parts_->laminate->cliques()};
-    parts_->pattern = NodePattern(parts_->input.mesh.vertex_count(), parts_->edge_unknowns, cliques);
+    parts_->pattern = NodePattern(parts_->input.mesh.vertex_count(),
+                                  static_cast<int>(parts_->edge_unknowns.size()), cliques);
     parts_->membrane->prepare(parts_->pattern);
     parts_->bending->prepare(parts_->pattern);
     parts_->laminate->prepare(parts_->pattern);
@@ -277,6 +280,7 @@ int Model::vertex_count() const { return parts_->input.mesh.vertex_count(); }
 const ModelInput& Model::input() const { return parts_->input; }
 const MeshEdges& Model::edges() const { return parts_->edges; }
 const NodePattern& Model::pattern() const { return parts_->pattern; }
+std::array<int, 4> Model::vertices_of_edge_unknown(int k) const { return parts_->edge_unknowns[k]; }
 
 Eigen::VectorXd Model::initial() const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
@@ -328,6 +332,19 @@ std::vector<double> Model::energy_density(const Eigen::VectorXd& x) const {
     fill(parts_->membrane->term(), parts_->bare);
     fill(parts_->laminate->term(), parts_->printed);
     return density;
+}
+
+double Model::typical_force(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    double sum = 0.0;
+    const auto add = [&](const auto& term) {
+        for (int e = 0; e < term.element_count(); ++e) {
+            sum += term.evaluate(e, unknowns, Order::gradient).gradient.template head<9>().squaredNorm();
+        }
+    };
+    add(parts_->membrane->term());
+    add(parts_->laminate->term());
+    return std::sqrt(sum / (3.0 * parts_->input.mesh.triangle_count()));
 }
 
 Health Model::health(const Eigen::VectorXd& x) const {

@@ -100,6 +100,8 @@ class Model {
     const ModelInput& input() const;
     const MeshEdges& edges() const;
     const NodePattern& pattern() const;
+    /// Ends of the k-th edge unknown's edge and the two vertices opposite it.
+    std::array<int, 4> vertices_of_edge_unknown(int k) const;
 
     /// Flat as printed, without noise; edge unknowns zero.
     Eigen::VectorXd initial() const;
@@ -116,6 +118,10 @@ class Model {
 
     /// Elastic energy of each triangle per area of layout (membrane or laminate, without hinges), mJ/mm^2.
     std::vector<double> energy_density(const Eigen::VectorXd& x) const;
+
+    /// What a residual is to be compared with: root mean square over elements and corners of the internal
+    /// force, N.
+    double typical_force(const Eigen::VectorXd& x) const;
 
     /// Everything in Health but self-intersections.
     Health health(const Eigen::VectorXd& x) const;

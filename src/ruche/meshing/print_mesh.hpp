@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "ruche/core/fields.hpp"
 #include "ruche/geometry/triangle_mesh.hpp"
 #include "ruche/pattern/pattern.hpp"
 
@@ -50,6 +51,9 @@ struct MeshOptions {
     double fabric_size_mm = 2.0;   ///< edge length far from plastic
     double grading = 0.3;          ///< growth of edge length per length away from plastic
 };
+
+template <>
+std::span<const Field<MeshOptions>> fields<MeshOptions>();
 
 /// Conforming constrained Delaunay mesh with minimum angle above 20 degrees away from sharper input angles,
 /// triangle and vertex numbers deterministic and spatially coherent. Throws InputError.

@@ -38,4 +38,12 @@ struct Equilibrium {
     std::string message;  ///< why it stopped, for a person
 };
 
+/// Finds a strict local minimum of the energy modulo the rigid motions that nothing resists: Newton's method
+/// with the exact Hessian, the Gauss-Newton form while the sheet turns, steps along the rotation-strain
+/// retraction, and the exact Cholesky factor as certificate; where that fails it leaves the saddle along the
+/// direction of negative curvature. Starts from `start` (all unknowns) or from the flat printed state with a
+/// little noise. Throws InputError for gravity that nothing holds, std::bad_alloc.
+[[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options = {},
+                                const Control& control = {}, const Eigen::VectorXd* start = nullptr);
+
 }  // namespace ruche

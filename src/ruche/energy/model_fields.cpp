@@ -1,0 +1,32 @@
+#include "ruche/energy/model.hpp"
+
+namespace ruche {
+
+template <>
+std::span<const Field<ModelOptions>> fields<ModelOptions>() {
+    using M = ModelOptions;
+    static constexpr std::string_view edge_normals[] = {"free", "averaged"};
+    static constexpr std::string_view bending_normalisation[] = {"plate", "as_printed"};
+    static constexpr std::string_view laminate_thickness[] = {"true", "as_printed"};
+    static constexpr std::string_view shear_strain[] = {"engineering", "tensor"};
+    static const Field<M> table[] = {
+        {"edge_normals", choice<&M::edge_normals>(edge_normals), "", -infinity, infinity,
+         "How the plastic's curvature is measured at an edge: free turns the edge's normal to where the "
+         "energy is least and gives the same curvature on any mesh; averaged is the paper's."},
+        {"bending_normalisation", choice<&M::bending_normalisation>(bending_normalisation), "", -infinity,
+         infinity,
+         "Bending energy of the fabric: plate stores 1/2 k_B kappa^2 per area, as the cantilever test that "
+         "measures k_B; as_printed is the paper's eq. 7, six times as much."},
+        {"laminate_thickness", choice<&M::laminate_thickness>(laminate_thickness), "", -infinity, infinity,
+         "Layer thickness in the paper's eq. 8: true is the layer's thickness; as_printed halves it, which "
+         "doubles the curvature."},
+        {"shear_strain", choice<&M::shear_strain>(shear_strain), "", -infinity, infinity,
+         "Shear strain that alpha_3 acts on: engineering is 2 E_12, tensor is E_12."},
+        {"log_extension", &M::log_extension, "", 1e-9, 0.1,
+         "The fabric's stress goes on linearly from Green strain gamma minus this; the paper has 1e-6, "
+         "which is too stiff to solve with."},
+    };
+    return table;
+}
+
+}  // namespace ruche

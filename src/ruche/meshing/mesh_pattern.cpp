@@ -1,0 +1,247 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ruche/core/error.hpp"
+#include "ruche/geometry/border_graph.hpp"
+#include "ruche/geometry/polyline.hpp"
+#include "ruche/meshing/mesh_order.hpp"
+#include "ruche/meshing/point_locator.hpp"
+#include "ruche/meshing/print_mesh.hpp"
+#include "ruche/meshing/size_field.hpp"
+#include "ruche/meshing/triangulate.hpp"
+
+namespace ruche {
+
+namespace {
+
+constexpr double grid_snap = 2e-6;         // mm: the borders of a finished pattern stay as they are
+constexpr int most_triangles = 2'000'000;  // minutes per Newton step; memory of some 20 GB
+constexpr double unforeseen = 20.0;        // times the expected number of triangles: borders too close
+
+void check(const Pattern& pattern, const MeshOptions& options) {
+    const auto positive = [](double value, const char* key, const char* meaning) {
+        if (value > 0.0 && std::isfinite(value)) return;
+        throw InputError({.key = key}, fmt::format("{} is not a positive number", value), meaning);
+    };
+    positive(options.size_mm, "mesh.size_mm", "Edge length of the elements on plastic, mm.");
+    positive(options.fabric_size_mm, "mesh.fabric_size_mm", "Edge length far from plastic, mm.");
+    positive(options.elements_across, "mesh.elements_across", "Elements across the width of a strip.");
+    if (!(options.grading >= 0.0) || !std::isfinite(options.grading)) {
+        throw InputError({.key = "mesh.grading"}, fmt::format("{} is not a growth rate", options.grading),
+                         "Growth of the edge length per length away from plastic: 0 or more.");
+    }
+    if (pattern.fabric.empty()) throw InputError({}, "the pattern has no fabric to mesh");
+}
+
+double size_on(const Polygon& polygon, const MeshOptions& options) {
+    return std::min(options.size_mm, strip_width(polygon) / options.elements_across);
+}
+
+SizeField size_field(const Pattern& pattern, const MeshOptions& options) {
+    double finest = options.size_mm;
+    for (const Strip& strip : pattern.strips) {
+        for (const Polygon& polygon : strip.region) finest = std::min(finest, size_on(polygon, options));
+    }
+    SizeField field(bounding_box(pattern.fabric),
+                    {.far_size = std::max(options.fabric_size_mm, options.size_mm),
+                     .grading = options.grading,
+                     .finest = finest});
+    for (const Strip& strip : pattern.strips) {
+        for (const Polygon& polygon : strip.region) field.refine({polygon}, size_on(polygon, options));
+    }
+    field.spread();
+    return field;
+}
+
+// The graph's segments, those around plastic divided evenly: even triangles on strips, and the same on both
+// of its sides. `origin` tells which segment of the graph each came from.
+SegmentGraph divide(const BorderGraph& graph, const SizeField& sizes, std::vector<int>& origin) {
+    SegmentGraph result;
+    result.points = graph.points;
+    for (int i = 0; i < static_cast<int>(graph.segments.size()); ++i) {
+        const BorderGraph::Segment& s = graph.segments[i];
+        const Vec2& a = graph.points[s.point[0]];
+        const Vec2& b = graph.points[s.point[1]];
+        const bool outline = s.regions.front() == 0;
+        const bool plastic = s.regions.back() > 0;
+        // A piece up to a fifth too long is better than two short ones.
+        const double pieces = plastic ? std::ceil((b - a).norm() / sizes.at(0.5 * (a + b)) - 0.2) : 1.0;
+        const int count = static_cast<int>(std::clamp(pieces, 1.0, 1.0 * most_triangles));
+        int from = s.point[0];
+        for (int k = 1; k <= count; ++k) {
+            const int to = k == count ? s.point[1] : static_cast<int>(result.points.size());
+            if (k < count) result.points.emplace_back(a + (b - a) * (static_cast<double>(k) / count));
+            result.segments.push_back({from, to});
+            result.outline.push_back(outline);
+            origin.push_back(i);
+            from = to;
+        }
+    }
+    return result;
+}
+
+Triangulation refined(const Pattern& pattern, const MeshOptions& options, const SegmentGraph& graph,
+                      const SizeField& sizes) {
+    const double expected = sizes.expected_triangles(pattern.fabric);
+    if (expected > most_triangles) {
+        const double enough = options.size_mm * std::sqrt(expected / most_triangles);
+        throw InputError({.key = "mesh.size_mm"},
+                         fmt::format("the mesh would take about {:.2g} triangles; the limit is {:.2g}",
+                                     expected, 1.0 * most_triangles),
+                         fmt::format("Choose mesh.size_mm = {:.2g} or larger (now {:.3g}), or a larger "
+                                     "mesh.fabric_size_mm (now {:.3g}).",
+                                     enough, options.size_mm, options.fabric_size_mm));
+    }
+    const double limit = std::min(1.0 * most_triangles, unforeseen * expected + 200.0 * graph.points.size());
+    try {
+        return triangulate(
+            graph, [&](const Vec2& p) { return sizes.at(p); }, static_cast<int>(limit));
+    } catch (const InputError& error) {
+        throw InputError(
+            {.key = "mesh.size_mm"}, error.problem(),
+            "Borders there are much closer to each other than the element size: join or separate "
+            "them in the drawing, or choose a smaller mesh.size_mm.");
+    }
+}
+
+// Which regions (0 = fabric, i + 1 = strip i) cover each piece of the plane: a border changes its own ones.
+std::vector<std::vector<int>> regions_of_pieces(const Triangulation& triangulation, const BorderGraph& graph,
+                                                const std::vector<int>& origin) {
+    struct Door {
+        int piece, segment;
+    };
+    std::vector<std::vector<Door>> doors(triangulation.piece_count);
+    for (std::size_t s = 0; s < origin.size(); ++s) {
+        const auto [left, right] = triangulation.beside[s];
+        doors[left].push_back({right, origin[s]});
+        doors[right].push_back({left, origin[s]});
+    }
+    std::vector<std::vector<int>> regions(triangulation.piece_count);
+    std::vector<char> known(triangulation.piece_count, 0);
+    std::vector<int> open = {0};
+    known[0] = 1;
+    while (!open.empty()) {
+        const int piece = open.back();
+        open.pop_back();
+        for (const Door& door : doors[piece]) {
+            if (known[door.piece]) continue;
+            known[door.piece] = 1;
+            const std::vector<int>& border = graph.segments[door.segment].regions;
+            std::set_symmetric_difference(regions[piece].begin(), regions[piece].end(), border.begin(),
+                                          border.end(), std::back_inserter(regions[door.piece]));
+            open.push_back(door.piece);
+        }
+    }
+    return regions;
+}
+
+/// The strips on a triangle, -1 = none.
+struct Cover {
+    int front = -1;
+    int back = -1;
+};
+
+Cover cover_of(const std::vector<int>& regions, const std::vector<Strip>& strips) {
+    Cover cover;
+    for (const int r : regions) {
+        if (r == 0) continue;
+        int& best = strips[r - 1].side == Side::front ? cover.front : cover.back;
+        if (best < 0 || strips[r - 1].thickness > strips[best].thickness) best = r - 1;
+    }
+    return cover;
+}
+
+void set_print(PrintMesh& result, const std::vector<Cover>& covers, const std::vector<Strip>& strips) {
+    for (const Cover& cover : covers) {
+        Print print;
+        if (cover.front >= 0) {
+            print.front = strips[cover.front].thickness;
+            print.front_modulus = strips[cover.front].youngs_modulus;
+        }
+        if (cover.back >= 0) {
+            print.back = strips[cover.back].thickness;
+            print.back_modulus = strips[cover.back].youngs_modulus;
+        }
+        result.print.push_back(print);
+        result.strip.push_back(print.back > print.front ? cover.back : cover.front);
+    }
+}
+
+// A sheet must not hang together at a single point: nothing could be said about how it bends there.
+void check_manifold(const TriangleMesh& mesh) {
+    std::vector<int> border_edges(mesh.vertices.size(), 0);
+    for (const Edge& edge : find_edges(mesh).edges) {
+        if (!edge.on_boundary()) continue;
+        for (const int v : edge.vertex) {
+            if (++border_edges[v] <= 2) continue;
+            const Vec2& at = mesh.vertices[v];
+            throw InputError(
+                {},
+                fmt::format("parts of the fabric touch at a single point, x = {:.5g}, y = {:.5g} mm", at.x(),
+                            at.y()),
+                "Let them overlap or keep them apart, or lay a margin of fabric around the print.");
+        }
+    }
+}
+
+std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions& options,
+                                       const TriangleMesh& mesh, const std::vector<Cover>& covers) {
+    const PointLocator locator(mesh);
+    std::vector<MeshedStrip> result;
+    for (int s = 0; s < static_cast<int>(pattern.strips.size()); ++s) {
+        const Strip& strip = pattern.strips[s];
+        MeshedStrip meshed{strip.id, strip.side, strip.thickness, {}};
+        const auto own = [&](int t) {
+            return (strip.side == Side::front ? covers[t].front : covers[t].back) == s;
+        };
+        double size = options.size_mm;
+        for (const Polygon& polygon : strip.region) size = std::min(size, size_on(polygon, options));
+        for (const Polyline& line : strip.centreline) {
+            const double pieces = std::ceil(length(line) / (0.5 * size) - 1e-9);
+            if (!(pieces >= 1.0 && pieces < most_triangles)) continue;
+            std::vector<MeshPoint> points;
+            for (const Vec2& p : resample(line, false, static_cast<int>(pieces) + 1)) {
+                if (const std::optional<MeshPoint> at = locator.find(p, 0.5 * size, own))
+                    points.push_back(*at);
+            }
+            if (points.size() >= 2) meshed.centreline.push_back(std::move(points));
+        }
+        result.push_back(std::move(meshed));
+    }
+    return result;
+}
+
+}  // namespace
+
+PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
+    check(pattern, options);
+    std::vector<Region> regions = {pattern.fabric};
+    for (const Strip& strip : pattern.strips) regions.push_back(strip.region);
+    const BorderGraph graph = border_graph(regions, grid_snap);
+    const SizeField sizes = size_field(pattern, options);
+    std::vector<int> origin;
+    const SegmentGraph segments = divide(graph, sizes, origin);
+    const Triangulation triangulation = refined(pattern, options, segments, sizes);
+    if (triangulation.mesh.triangles.empty()) throw InputError({}, "the fabric's outline encloses no area");
+
+    const std::vector<std::vector<int>> covered = regions_of_pieces(triangulation, graph, origin);
+    const std::vector<int> order = spatial_order(triangulation.mesh);
+    PrintMesh result;
+    result.mesh = reordered(triangulation.mesh, order);
+    check_manifold(result.mesh);
+    std::vector<Cover> covers;
+    for (const int t : order) covers.push_back(cover_of(covered[triangulation.piece[t]], pattern.strips));
+    set_print(result, covers, pattern.strips);
+    result.strips = meshed_strips(pattern, options, result.mesh, covers);
+    result.warnings = pattern.warnings;
+    const int pieces = find_pieces(result.mesh).count;
+    if (pieces > 1) {
+        result.warnings.push_back(
+            fmt::format("the fabric is in {} separate pieces, which move independently", pieces));
+    }
+    return result;
+}
+
+}  // namespace ruche

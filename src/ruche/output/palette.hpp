@@ -1,0 +1,33 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+namespace ruche {
+
+/// A colour as screens and style sheets write it, each component 0 to 255.
+struct Colour {
+    std::array<unsigned char, 3> srgb;
+
+    /// The same as amounts of light, 0 to 1 (IEC 61966-2-1).
+    std::array<double, 3> linear() const {
+        std::array<double, 3> result;
+        for (int i = 0; i < 3; ++i) {
+            const double c = srgb[i] / 255.0;
+            result[i] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+        }
+        return result;
+    }
+};
+
+/// The colours of everything that shows a result, so that a picture, a page and a viewer agree.
+namespace palette {
+inline constexpr Colour fabric{{240, 178, 66}};       // honey
+inline constexpr Colour plastic_front{{52, 44, 48}};  // dark comb
+inline constexpr Colour plastic_back{{38, 84, 96}};   // petrol
+inline constexpr Colour paper{{246, 240, 231}};       // warm white
+inline constexpr Colour ink{{66, 56, 50}};
+inline constexpr Colour alarm{{196, 43, 32}};
+}  // namespace palette
+
+}  // namespace ruche

@@ -1,0 +1,53 @@
+#include "ruche/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "ruche/material/cards.hpp"
+
+namespace ruche {
+
+std::string resolved_path(const Scene& scene, const std::string& path) {
+    return (std::filesystem::path(scene.file).parent_path() / path).string();
+}
+
+std::string scene_name(const Scene& scene) {
+    for (const std::string& path :
+         {scene.file, scene.pattern.svg, scene.pattern.mesh, scene.pattern.generator}) {
+        std::string stem = std::filesystem::path(path).stem().string();
+        if (!stem.empty()) return stem;
+    }
+    return "scene";
+}
+
+template <class Section>
+static std::string default_text(const Section& section, const std::string& name, std::string_view key) {
+    for (const Field<Section>& field : fields<Section>())
+        if (field.key == key)
+            return fmt::format("{}.{} = {}{}{} (not given)", name, bare_name(info(field)),
+                               to_string(get(section, field)), field.unit.empty() ? "" : " ", field.unit);
+    return {};
+}
+
+std::vector<std::string> assumptions(const Scene& scene) {
+    std::vector<std::string> texts;
+    const auto add = [&](const auto& section, const std::string& name, std::string_view key) {
+        if (!scene.sources.contains(name + "." + std::string(key)))
+            texts.push_back(default_text(section, name, key));
+    };
+    add(scene.fabric, "fabric", "card");
+    add(scene.fabric, "fabric", "prestretch");
+    add(scene.fabric, "fabric", "axis_deg");
+    const bool drawn = scene.pattern.mesh.empty();
+    if (drawn && scene.fabric.outline.empty()) add(scene.fabric, "fabric", "margin_mm");
+    if (drawn && !scene.plastic.none) {
+        add(scene.plastic, "plastic", "thickness_mm");
+        add(scene.plastic, "plastic", "side");
+    }
+    for (std::string& text : assumed_values(scene.material, scene.material_sources))
+        texts.push_back(std::move(text));
+    return texts;
+}
+
+}  // namespace ruche

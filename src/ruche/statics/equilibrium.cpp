@@ -1,0 +1,330 @@
+#include "ruche/statics/equilibrium.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+
+#include "ruche/core/error.hpp"
+#include "ruche/statics/retraction.hpp"
+#include "ruche/statics/rigid_motions.hpp"
+#include "ruche/statics/sparse_cholesky.hpp"
+
+namespace ruche {
+namespace {
+
+/// Reproducible noise: a number in [-1, 1] from a seed and an index (SplitMix64).
+double noise(std::uint64_t seed, std::uint64_t index) {
+    std::uint64_t z = (seed << 40U) + (index + 1) * 0x9e3779b97f4a7c15ULL;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+    z ^= z >> 31U;
+    return static_cast<double>(z >> 11U) * 0x1.0p-52 - 1.0;
+}
+
+double smallest_edge(const TriangleMesh& mesh) {
+    double smallest = infinity;
+    for (const Triangle& tri : mesh.triangles) {
+        for (int i = 0; i < 3; ++i) {
+            smallest = std::min(smallest, (mesh.vertices[tri[i]] - mesh.vertices[tri[(i + 1) % 3]]).norm());
+        }
+    }
+    return smallest;
+}
+
+Eigen::VectorXd noisy_start(const Model& model, const SolveOptions& options) {
+    Eigen::VectorXd x = model.initial();
+    const double size = std::min(options.noise_mm, 0.01 * smallest_edge(model.input().mesh));
+    for (int i = 0; i < 3 * model.vertex_count(); ++i) x[i] += size * noise(options.seed, i);
+    return x;
+}
+
+std::string short_number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1e", value);
+    return text;
+}
+
+/// One run of Newton's method.
+class Newton {
+  public:
+    Newton(const Model& model, const SolveOptions& options, const Control& control)
+        : model_(model),
+          options_(options),
+          control_(control),
+          rigid_(model),
+          retraction_(model),
+          cholesky_({model.size(), model.pattern().column_start(), model.pattern().row_index()},
+                    elimination_order(model)),
+          held_(model.size(), 0) {
+        for (const Support& support : model.input().supports) {
+            for (int c = 0; c < 3; ++c) held_[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
+        }
+    }
+
+    Equilibrium run(Eigen::VectorXd x);
+
+  private:
+    /// rms rotation of a step above which the sheet is "turning" and the Gauss-Newton form is the better
+    /// model.
+    static constexpr double turning = 0.05;
+
+    void evaluate(Order order) {
+        terms_ = model_.evaluate(x_, order, sums_);
+        mask_gradient();
+    }
+    void mask_gradient() {
+        for (int i = 0; i < model_.size(); ++i) {
+            if (held_[i]) sums_.gradient[i] = 0.0;
+        }
+    }
+    double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
+    double energy_scale() const {
+        return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
+               std::abs(terms_.gravity);
+    }
+
+    bool factorize(double shift = 0.0);
+    bool solve_step(Order order);
+    bool line_search();
+    bool leave_saddle();
+    void report() const;
+
+    const Model& model_;
+    SolveOptions options_;
+    const Control& control_;
+    RigidMotions rigid_;
+    Retraction retraction_;
+    SparseCholesky cholesky_;
+    std::vector<char> held_;
+
+    Eigen::VectorXd x_;
+    Eigen::VectorXd step_;
+    AssembledSums sums_;
+    AssembledSums trial_;
+    EnergyTerms terms_;
+    std::vector<double> matrix_;
+    int iterations_ = 0;
+    int factorizations_ = 0;
+};
+
+bool Newton::factorize(double shift) {
+    const NodePattern& pattern = model_.pattern();
+    matrix_ = sums_.hessian;
+    for (const GaugeDirection& gauge : rigid_.gauge(x_)) {
+        const int at = pattern.block_offset(gauge.vertex, gauge.vertex);
+        const int length = pattern.column_length(gauge.vertex);
+        const double stiffness =
+            (matrix_[at] + matrix_[at + length + 1] + matrix_[at + 2 * length + 2]) / 3.0;
+        for (int c = 0; c < 3; ++c) {
+            for (int r = 0; r < 3; ++r) {
+                matrix_[at + c * length + r] += stiffness * gauge.direction[r] * gauge.direction[c];
+            }
+        }
+    }
+    const std::vector<int>& start = pattern.column_start();
+    const std::vector<int>& row = pattern.row_index();
+    const bool supported = !model_.input().supports.empty();
+    for (int column = 0; column < model_.size() && (supported || shift != 0.0); ++column) {
+        for (int k = start[column]; k < start[column + 1]; ++k) {
+            if (row[k] == column) matrix_[k] += shift;
+            if (held_[column] || held_[row[k]]) matrix_[k] = row[k] == column ? 1.0 : 0.0;
+        }
+    }
+    ++factorizations_;
+    return cholesky_.factorize(matrix_);
+}
+
+/// Factorises (evaluating again with the Gauss-Newton form where the exact Hessian is not positive definite)
+/// and solves for the step. False when not even a shifted Gauss-Newton matrix can be factorised.
+bool Newton::solve_step(Order order) {
+    bool ready = factorize();
+    if (!ready && order == Order::hessian) {
+        evaluate(Order::gauss_newton);
+        ready = factorize();
+    }
+    if (!ready) {
+        double mean = 0.0;
+        for (int n = 0; n < model_.size(); ++n)
+            mean += sums_.hessian[model_.pattern().column_start()[n]] / model_.size();
+        for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
+            ready = factorize(shift);
+    }
+    if (ready) step_ = cholesky_.solve(-sums_.gradient);
+    return ready && step_.allFinite();
+}
+
+/// Armijo's rule along the retraction; false when no step of reasonable length lowers energy or residual.
+bool Newton::line_search() {
+    const double energy = terms_.total();
+    const double slope = sums_.gradient.dot(step_);
+    const double before = residual();
+    double t = 1.0;
+    for (int halving = 0; halving < 30; ++halving, t *= 0.5) {
+        const Eigen::VectorXd candidate = retraction_(x_, step_, t);
+        if (std::abs(slope) < 1e-9 * energy_scale()) {
+            // Energy differences drown in rounding: judge by the gradient.
+            const EnergyTerms terms = model_.evaluate(candidate, Order::gradient, trial_);
+            double after = 0.0;
+            for (int i = 0; i < model_.size(); ++i)
+                after = std::max(after, held_[i] ? 0.0 : std::abs(trial_.gradient[i]));
+            if (std::isfinite(terms.total()) && after < before) {
+                x_ = candidate;
+                return true;
+            }
+            if (std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
+        }
+        const double trial = model_.energy(candidate);
+        if (std::isfinite(trial) && trial <= energy + 1e-4 * t * slope) {
+            x_ = candidate;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
+/// iteration on a shifted matrix and moves along it to lower energy.
+bool Newton::leave_saddle() {
+    double mean = 0.0;
+    for (int n = 0; n < model_.size(); ++n)
+        mean += std::abs(sums_.hessian[model_.pattern().column_start()[n]]) / model_.size();
+    bool ready = false;
+    for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0) ready = factorize(shift);
+    if (!ready) return false;
+    Eigen::VectorXd direction(model_.size());
+    for (int i = 0; i < model_.size(); ++i) direction[i] = held_[i] ? 0.0 : noise(options_.seed + 77, i);
+    for (int i = 0; i < 20; ++i) direction = cholesky_.solve(direction.normalized()).col(0);
+    direction /= direction.head(3 * model_.vertex_count()).cwiseAbs().maxCoeff();
+    if (direction.dot(sums_.gradient) > 0.0) direction = -direction;
+    const double energy = terms_.total();
+    double best_energy = energy - 1e-14 * energy_scale();
+    Eigen::VectorXd best;
+    for (double length = 4.0; length > 1e-4; length *= 0.5) {
+        for (const double sign : {1.0, -1.0}) {
+            const Eigen::VectorXd candidate = retraction_(x_, direction, sign * length);
+            const double trial = model_.energy(candidate);
+            if (std::isfinite(trial) && trial < best_energy) {
+                best_energy = trial;
+                best = candidate;
+            }
+        }
+        if (best.size() > 0) break;
+    }
+    if (best.size() == 0) return false;
+    x_ = best;
+    return true;
+}
+
+void Newton::report() const {
+    control_.say({"release", -1.0,
+                  "iteration " + std::to_string(iterations_) + ": energy " + std::to_string(terms_.total()) +
+                      " mJ, residual " + short_number(residual()) + " N"});
+}
+
+Equilibrium Newton::run(Eigen::VectorXd x) {
+    x_ = std::move(x);
+    Equilibrium result;
+    double rotation = infinity;
+    int gauss_newton_left = 0;
+    int escapes = 0;
+    bool stalled = false;
+    for (;;) {
+        const bool exact = rotation <= turning && gauss_newton_left == 0;
+        const Order order = exact ? Order::hessian : Order::gauss_newton;
+        evaluate(order);
+        report();
+        result.residual = residual();
+        if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
+            result.message = "the start is not a possible shape: its energy is not finite";
+            break;
+        }
+        if (result.residual <= options_.residual_tolerance_n || stalled) {
+            if (!exact) evaluate(Order::hessian);
+            result.stable = factorize();
+            if (result.stable || escapes == 5) {
+                result.status = result.residual <= options_.residual_tolerance_n ? SolveStatus::converged
+                                                                                 : SolveStatus::not_converged;
+                result.message = result.stable ? "strict local minimum" : "stationary, but not a minimum";
+                if (stalled) result.message = "no step lowers energy or residual any further";
+                break;
+            }
+            ++escapes;
+            stalled = false;
+            if (!leave_saddle()) {
+                result.message = "a saddle that could not be left";
+                break;
+            }
+            rotation = turning;
+            continue;
+        }
+        if (iterations_ >= options_.max_iterations) {
+            result.message = "not converged after " + std::to_string(iterations_) + " iterations";
+            break;
+        }
+        if (control_.stopped()) {
+            result.status = SolveStatus::interrupted;
+            result.message = "interrupted";
+            break;
+        }
+        ++iterations_;
+        const int before = factorizations_;
+        if (!solve_step(order)) {
+            result.message = "no factorisable matrix at iteration " + std::to_string(iterations_);
+            break;
+        }
+        if (gauss_newton_left > 0) --gauss_newton_left;
+        if (exact && factorizations_ > before + 1) gauss_newton_left = 1;
+        rotation = retraction_.rms_rotation(x_, step_);
+        stalled = !line_search();
+        if (stalled && !exact) {
+            // Try the exact Hessian before giving up.
+            rotation = 0.0;
+            gauss_newton_left = 0;
+            stalled = false;
+            evaluate(Order::hessian);
+            stalled = !(solve_step(Order::hessian) && line_search());
+        }
+    }
+    result.x = x_;
+    result.energy = terms_;
+    result.typical_force = model_.typical_force(x_);
+    result.iterations = iterations_;
+    result.factorizations = factorizations_;
+    result.health = model_.health(x_);
+    return result;
+}
+
+void require_held(const Model& model) {
+    const ModelInput& input = model.input();
+    const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
+    if (gravity.norm() == 0.0 || input.table.present) return;
+    const MeshPieces pieces = find_pieces(input.mesh);
+    std::vector<char> held(pieces.count, 0);
+    for (const Support& support : input.supports) {
+        if (pieces.of_vertex[support.vertex] >= 0) held[pieces.of_vertex[support.vertex]] = 1;
+    }
+    for (const char h : held) {
+        if (!h) {
+            throw InputError(
+                {.key = "gravity"}, "a piece of the sheet would fall for ever: nothing holds it",
+                "Add a [[support]], put it on a table (gravity.table = true), or remove gravity.");
+        }
+    }
+}
+
+}  // namespace
+
+Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
+                  const Eigen::VectorXd* start) {
+    const auto begin = std::chrono::steady_clock::now();
+    require_held(model);
+    Newton newton(model, options, control);
+    Retraction retraction(model);
+    Eigen::VectorXd x = retraction.meet_supports(start != nullptr ? *start : noisy_start(model, options));
+    Equilibrium result = newton.run(std::move(x));
+    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+}
+
+}  // namespace ruche

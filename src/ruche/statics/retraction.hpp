@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <vector>
+
+#include "ruche/energy/model.hpp"
+#include "ruche/statics/sparse_cholesky.hpp"
+
+namespace ruche {
+
+/// Turns Newton's step into a curve that rotates elements instead of stretching them:
+///
+///     x(t) = x + t d + O(t^2)
+///
+/// Per triangle with edges D = [e1 e2] and the step's dD: velocity gradient A = dD P^T + n_dot n^T with
+/// P = D (D^T D)^-1, n_dot = -P dD^T n; W = skew A, eps = sym A; target edges D(t) = exp(t W) sqrt(I + 2 t
+/// eps) D. Positions follow from one Poisson problem on the layout with area weights (plastic 30 times
+/// fabric), whose matrix is factorised once per mesh. Edge unknowns move along the straight line.
+class Retraction {
+  public:
+    explicit Retraction(const Model& model);
+
+    /// The state x(t) for step d.
+    Eigen::VectorXd operator()(const Eigen::VectorXd& x, const Eigen::VectorXd& step, double t);
+
+    /// Area-weighted root mean square, over elements, of the angle by which a step turns them, rad.
+    double rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const;
+
+    /// Moves the supported vertices to where they are held and the rest along with them (harmonically).
+    Eigen::VectorXd meet_supports(const Eigen::VectorXd& x);
+
+  private:
+    struct Element {
+        Triangle vertices;
+        double weight;
+        double area;
+        Eigen::Matrix<double, 2, 3> gradients;  // of the three hat functions on the layout
+        Mat2 inverse_edges;                     // of [e1 e2] in the layout
+    };
+
+    SparseCholesky& factor_without(int component);
+    void weighted_divergence(const std::vector<Eigen::Matrix<double, 3, 2>>& edge_changes,
+                             Eigen::MatrixXd& out) const;
+
+    int vertex_count_ = 0;
+    double total_area_ = 0.0;
+    std::vector<Element> elements_;
+    MeshPieces pieces_;
+    std::array<std::vector<char>, 3> held_;  // per component and vertex: by a support
+    std::array<std::vector<int>, 3>
+        anchors_;  // per component: one vertex of each piece that no support holds
+    std::array<std::vector<char>, 3> dirichlet_;  // held or anchor
+    std::vector<Support> supports_;
+    std::vector<int> column_start_, row_index_;
+    std::vector<double> values_;
+    std::array<std::shared_ptr<SparseCholesky>, 3> factors_;
+    std::vector<int> order_;
+};
+
+}  // namespace ruche
