@@ -98,9 +98,13 @@ std::vector<Case> wrong_files() {
         {"exploding uses of nothing", exploding_uses(20, ""),
          "use elements repeat more than 100000 elements"},
         {"too many shapes", on_page(repeated(rect, 60000)), "the drawing has more than 50000 shapes"},
-        {"too many points", exploding_uses(4, "<path d='M0 0" + repeated("a9 9 0 11 .1 .1", 500) + "'/>"),
+        {"too many points", exploding_uses(4, "<path d='M0 0" + repeated("h.01v.01", 100) + "'/>"),
          "points at a tolerance of"},
         {"tangled", zigzag(20000), "path 'z': the lines cross each other too often"},
+        {"heap of wide lines",
+         on_page("<path id='h' fill='none' stroke='red' stroke-width='30' d='" +
+                 repeated("M50 50l1 1M50 51l1-1", 2000) + "'/>"),
+         "path 'h': the lines cross each other too often"},
         {"many attributes",
          on_page("<rect" +
                  [] {
