@@ -28,9 +28,9 @@ struct Film {
     const FilmPixel& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * width + x]; }
 };
 
-/// Smooths the light (not colours, gloss or outlines) with an edge-avoiding a-trous filter (Dammertz et al.
-/// 2010): neighbours count as far as they lie in the same plane and belong to the same kind of part.
-/// `plane_tolerance` is in stage units. Turns the sums into means.
+/// Smooths the light, and gloss a little, but no colours and outlines, with an edge-avoiding a-trous filter
+/// (Dammertz et al. 2010): neighbours count as far as they lie in the same plane and belong to the same kind
+/// of part. `plane_tolerance` is in stage units. Turns the sums into means.
 void develop_light(Film& film, float plane_tolerance);
 
 }  // namespace ruche

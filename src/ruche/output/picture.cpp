@@ -34,9 +34,9 @@ Composition compose(const PictureOptions& options) {
     const auto w = static_cast<float>(c.width), h = static_cast<float>(c.height);
     c.unit = std::min(h, 0.75F * w) / 100.0F;
     c.split = std::round(0.385F * w);
-    const float top = 17.0F * c.unit, bottom = h - 15.0F * c.unit;
+    const float top = 16.0F * c.unit, bottom = h - 18.0F * c.unit;
     c.drawing = {5.0F * c.unit, top, c.split - 3.0F * c.unit, bottom};
-    c.shape = {c.split + 4.0F * c.unit, top, w - 6.5F * c.unit, bottom};
+    c.shape = {c.split + 4.0F * c.unit, top, w - 9.0F * c.unit, bottom};
     return c;
 }
 
@@ -93,7 +93,8 @@ void fade_borders(Film& film, int left, int right, float reach) {
             const auto nearest =
                 static_cast<float>(std::min({x - left, right - 1 - x, y, film.height - 1 - y}));
             const float inside = std::min(1.0F, nearest / reach);
-            const float share = (1.0F - p.part) * (1.0F - inside);
+            const float smooth = inside * inside * (3.0F - 2.0F * inside);
+            const float share = (1.0F - p.part) * (1.0F - smooth);
             if (share > 0.0F) p.light += share * (Vec3f::Ones() - p.light);
         }
 }
@@ -192,8 +193,8 @@ Image draw_picture(const Result& result, const PictureOptions& options) {
     shoot(drawing, 0, split);
     shoot(shape, split, c.width);
     develop_light(film, 0.01F);
-    if (drawing) fade_borders(film, 0, split, 4.0F * c.unit);
-    if (shape) fade_borders(film, split, c.width, 4.0F * c.unit);
+    if (drawing) fade_borders(film, 0, split, 8.0F * c.unit);
+    if (shape) fade_borders(film, split, c.width, 12.0F * c.unit);
     Image image = print(film);
     if (drawing) draw_scale_bar(image, c, *drawing, c.drawing, "printed flat on stretched fabric");
     if (shape) draw_scale_bar(image, c, *shape, c.shape, "released");

@@ -13,10 +13,11 @@ namespace {
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr int first_samples = 4;     ///< per picture element
 constexpr int edge_samples = 12;     ///< more where they disagree
-constexpr float key_share = 0.60F;   ///< of the light on the open ground
+constexpr float key_share = 0.54F;   ///< of the light on the open ground
 constexpr float key_radius = 0.24F;  ///< tangent of the softbox's half angle
 constexpr float through_fabric = 0.30F;
-constexpr float start = 6e-4F;  ///< rays start so far off a surface
+constexpr float rough_limit = 0.30F;  ///< a rough surface mirrors no more than this at grazing angles
+constexpr float start = 6e-4F;        ///< rays start so far off a surface
 
 /// Random numbers of one picture element: an additive recurrence (R2, Roberts 2018) with hashed offsets.
 class Dice {
@@ -59,9 +60,9 @@ class Photographer {
   public:
     Photographer(const Shot& shot, const std::vector<Vec3f>& ground, int width)
         : shot_(shot), stage_(*shot.stage), ground_(ground), width_(width) {
-        // From the upper left; from straight above the camera is `up`, so "behind" tilts with it.
-        const Vec3f flat_forward = Vec3f(0.0F, 1.0F, 0.0F);
-        key_ = (-0.62F * shot.camera.right + 1.0F * Vec3f::UnitZ() + 0.18F * flat_forward).normalized();
+        // From the left, over the photographer's shoulder.
+        key_ =
+            (-0.62F * shot.camera.right + 0.45F * shot.camera.up - 0.85F * shot.camera.forward).normalized();
         float open = 0.0F;
         constexpr int count = 256;
         for (int i = 0; i < count; ++i)
@@ -110,7 +111,7 @@ class Photographer {
         RayHit hit;
         if (!stage_.scene.intersect({.origin = from + start * normal, .direction = d}, hit))
             return Vec3f::Constant(sky_strength_ * sky(d));
-        return 0.5F * plain_albedo(static_cast<Look>(hit.part));
+        return 0.62F * plain_albedo(static_cast<Look>(hit.part));
     }
 
     void photograph_ground(FilmPixel& pixel, const Ray& ray, const Dice& dice, int n,
@@ -188,13 +189,13 @@ class Photographer {
             const Vec3f half = (view + to_key).normalized();
             const float nh = s.normal.dot(half), nl = std::max(0.0F, s.normal.dot(to_key));
             const float d = nh * nh * (a2 - 1.0F) + 1.0F;
-            const float fresnel = 0.045F + 0.955F * std::pow(1.0F - std::max(0.0F, view.dot(half)), 5.0F);
+            const float fresnel = 0.04F + 0.96F * std::pow(1.0F - std::max(0.0F, view.dot(half)), 5.0F);
             result +=
                 key_strength_ * fresnel * a2 / (pi * d * d) * nl / (4.0F * std::max(0.1F, nv * nl)) * nl;
         }
         const Vec3f rough = cosine_direction(s.normal, dice);
         const Vec3f mirror = (2.0F * nv * s.normal - view + 0.22F * rough).normalized();
-        const float fresnel = 0.045F + 0.955F * std::pow(1.0F - nv, 5.0F);
+        const float fresnel = 0.04F + rough_limit * std::pow(1.0F - nv, 5.0F);
         RayHit hit;
         if (!stage_.scene.intersect({.origin = s.lifted + start * s.normal, .direction = mirror}, hit))
             return Vec3f::Constant(result + fresnel * mirrored(mirror));

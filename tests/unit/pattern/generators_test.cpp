@@ -133,7 +133,7 @@ TEST_CASE("star generator: arms run along the tiling's edges towards the neighbo
 }
 
 TEST_CASE("hexagon generator: neighbours are the gap apart, outlined or filled") {
-    const HexagonTilingOptions options{.edge = 6, .gap = 1.5, .style = HexagonStyle::filled, .radius = 25};
+    const HexagonTilingOptions options{.edge = 6, .gap = 1.5, .style = HexagonStyle::filled, .radius = 16};
     const GeneratedPattern p = generate_hexagons(options);
     REQUIRE(p.strips.size() == 7);
     const auto inradius = [](const Polyline& hexagon) { return hexagon[0].norm() * std::sqrt(3.0) / 2; };
