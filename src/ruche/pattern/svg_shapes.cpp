@@ -151,7 +151,10 @@ class ShapeMaker {
         }
         Lines lines;
         for (const Subpath& subpath : *item.outline) {
-            lines.points.push_back(flatten(subpath, item.to_mm, how));
+            FlatLine flat = flatten(subpath, item.to_mm, how);
+            lines.points.push_back(std::move(flat.points));
+            lines.tight_turns.insert(lines.tight_turns.end(), flat.tight_turns.begin(),
+                                     flat.tight_turns.end());
             lines.closed.push_back(subpath.closed);
             for (const Vec2& point : lines.points.back()) check_coordinates(file_, item, point, largest_page);
         }

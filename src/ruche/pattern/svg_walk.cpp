@@ -263,7 +263,9 @@ Context Walker::inside(const pugi::xml_node& node, const Context& context, const
     const std::string label = label_of(node), id = node.attribute("id").value();
     const bool layer = std::string_view(node.attribute("inkscape:groupmode").value()) == "layer";
     const std::string& name = label.empty() ? id : label;
-    if (!name.empty() && (layer || !inner.in_layer)) inner.layer = name;
+    // Groups inside a clone's original name a motif, not where the clone lies.
+    const bool by_group = !inner.in_layer && (!inner.use_target || inner.layer.empty());
+    if (!name.empty() && (layer || by_group)) inner.layer = name;
     inner.in_layer = inner.in_layer || layer;
     if (!id.empty() && id != label) inner.groups.insert(inner.groups.begin(), id);
     if (!label.empty()) inner.groups.insert(inner.groups.begin(), label);

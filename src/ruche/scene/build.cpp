@@ -111,7 +111,7 @@ static std::vector<int> selected(const Scene& scene, const Selection& selection,
         high = high.cwiseMax(p);
     }
     throw InputError(
-        place_in(scene, path + ".min_mm"), "there is no vertex of the mesh in this box",
+        place_in(scene, path), "there is no vertex of the mesh in this box",
         fmt::format("The layout reaches from [{:.4g}, {:.4g}] to [{:.4g}, {:.4g}] mm. A box that is "
                     "narrower than an element may miss every vertex.",
                     low.x(), low.y(), high.x(), high.y()));
@@ -134,7 +134,7 @@ static std::vector<Support> model_supports(const Scene& scene, const TriangleMes
                 if (support.fix.find("xyz"[axis]) == std::string::npos) continue;
                 if (entry.fixed[axis] && entry.at[k] != at[k])
                     throw InputError(
-                        place_in(scene, path + ".min_mm"),
+                        place_in(scene, path),
                         fmt::format("takes the vertex at [{:.4g}, {:.4g}] mm somewhere else than an "
                                     "earlier support does",
                                     p.x(), p.y()));
@@ -180,8 +180,7 @@ static void check_held(const Scene& scene, const ModelInput& model) {
         for (std::size_t k = 0; k < 3; ++k)
             if (pulled[piece][k] && !held[piece][k])
                 throw InputError(
-                    place_in(scene,
-                             scene.supports.empty() ? "gravity.acceleration_mm_per_s2" : "support.1.min_mm"),
+                    place_in(scene, scene.supports.empty() ? "gravity.acceleration_mm_per_s2" : "support.1"),
                     fmt::format("piece {} of {} of the sheet is pulled along {} and held nowhere against it",
                                 piece + 1, count, "xyz"[k]),
                     "Support every connected piece of the fabric.");
