@@ -134,8 +134,6 @@ CASES = {
     "unknown path command": ({"d.svg": strip("M 10 10 K 50")}, ["d.svg"], "d.svg:1"),
     "transform to nothing": ({"d.svg": svg('<g transform="scale(0)"><path d="M 1 1 H 9" stroke="black"/></g>')},
                              ["d.svg"], "d.svg"),
-    "wrong transform": ({"d.svg": svg('<g transform="scale(a)"><path d="M 1 1 H 9" stroke="black"/></g>')},
-                        ["d.svg"], "d.svg:1"),
     "page of 0 mm": ({"d.svg": svg('<path d="M 1 1 H 9" stroke="black"/>',
                                    'width="0mm" height="0mm" viewBox="0 0 60 60"')}, ["d.svg"], "d.svg"),
     "page of 1e9 mm": ({"d.svg": svg('<path d="M 1 1 H 9" stroke="black"/>',
@@ -158,8 +156,8 @@ CASES = {
     "use of itself": ({"d.svg": svg('<g id="a"><use xlink:href="#a"/></g>')}, ["d.svg"], "d.svg"),
     "use bomb": ({"d.svg": svg('<path id="u0" d="M 1 1 H 9" stroke="black"/>' + "".join(
         f'<g id="u{i}">' + f'<use href="#u{i - 1}"/>' * 10 + "</g>" for i in range(1, 12)))}, ["d.svg"], "d.svg"),
-    "a million dashes": ({"d.svg": strip(style='stroke="black" stroke-width="1" stroke-dasharray="0.000001"')},
-                         ["d.svg"], "d.svg"),
+    "dashes of 0.05 mm": ({"d.svg": strip(style='stroke="black" stroke-width="1" stroke-dasharray="0.05"')},
+                          ["d.svg"], "0.1 mm"),
     # the layout mesh
     "empty mesh": ({"m.ply": ""}, ["m.ply"], "m.ply"),
     "binary mesh": ({"m.ply": b"ply\nformat binary_little_endian 1.0\n" + bytes(99)}, ["m.ply"], "m.ply"),
@@ -167,7 +165,9 @@ CASES = {
     "mesh with a corner too many": ({"m.ply": PLY.format(x=10, corners="0 1 3", front=0.5)}, ["m.ply"], "m.ply"),
     "mesh with nan": ({"m.ply": PLY.format(x="nan", corners="0 1 2", front=0.5)}, ["m.ply"], "m.ply"),
     "mesh with negative thickness": ({"m.ply": PLY.format(x=10, corners="0 1 2", front=-0.5)}, ["m.ply"], "m.ply"),
-    "mesh seen from the back": ({"m.ply": PLY.format(x=10, corners="0 2 1", front=0.5)}, ["m.ply"], "m.ply"),
+    "mesh that is folded over": (
+        {"m.ply": PLY.format(x=10, corners="0 1 2", front=0.5).replace("face 1", "face 2") + "3 0 2 1 0 0\n"},
+        ["m.ply"], "m.ply"),
     "mesh without area": ({"m.ply": PLY.format(x=0, corners="0 1 2", front=0.5)}, ["m.ply"], "m.ply"),
     "mesh with a billion vertices": ({"m.ply": GOOD_PLY.replace("vertex 3", "vertex 1000000000")}, ["m.ply"], "m.ply"),
     "obj that is none": ({"m.obj": "hello\n"}, ["m.obj"], "m.obj"),
@@ -200,7 +200,7 @@ def test_bad_input_ends_in_one_clear_message(name, tmp_path):
     assert run.stdout == b""
     assert error.startswith("error: ") and error.count("error: ") == 1, error
     assert message in error, error
-    assert len(error.splitlines()) <= 4 and len(error) < 1500, error
+    assert len(error.splitlines()) <= 5 and len(error) < 1500, error
     assert snapshot(tmp_path) == before
     assert used < 1.0, f"took {used} s of processor time"
 
@@ -220,9 +220,9 @@ def test_check_finds_the_same_mistakes(name, tmp_path):
     "arguments, message",
     [
         ([], "subcommand"),
-        (["simulat", "k.toml"], "simulat"),
+        (["simulat", "k.toml"], "did you mean simulate?"),
         (["pattern"], "subcommand"),
-        (["pattern", "torus", "-o", "t.svg"], "torus"),
+        (["pattern", "stripp", "-o", "t.svg"], "did you mean strip?"),
         (["pattern", "strip", "--width-mm", "-1", "-o", "t.svg"], "width_mm"),
         (["pattern", "strip", "--width-mm", "wide", "-o", "t.svg"], "width_mm"),
         (["cards", "spandex"], "there is no material card"),

@@ -24,7 +24,7 @@ template <class Struct>
 static void print_values(const Scene& scene, const std::string& section, const Struct& s) {
     for (const Field<Struct>& field : fields<Struct>()) {
         const FieldInfo about = info(field);
-        fmt::print("{:44} {:>14} {:8} {}\n", fmt::format("{}.{}", section, bare_name(about)),
+        fmt::print("{:44} {:>14} {:8} {}\n", fmt::format("{}.{}", section, about.key),
                    to_string(get(s, field)), about.unit, origin(scene, section, about));
     }
 }

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "ruche/cli/verbs.hpp"
 #include "ruche/core/error.hpp"
+#include "ruche/core/suggest.hpp"
 
 namespace {
 
@@ -20,6 +24,23 @@ constexpr const char* examples =
     "\n"
     "Exit codes: 0 converged and stable, 1 failed, 2 wrong input, 3 not converged or not stable,\n"
     "130 interrupted.";
+
+/// CLI11 only says that a subcommand is missing; this says what was written in its place.
+void check_verbs(const CLI::App* app, int count, char** arguments) {
+    for (int i = 1; i < count && app->get_require_subcommand_min() > 0 && arguments[i][0] != '-'; ++i) {
+        std::vector<std::string> names;
+        const CLI::App* chosen = nullptr;
+        for (const CLI::App* verb : app->get_subcommands([](const CLI::App*) { return true; })) {
+            names.push_back(verb->get_name());
+            if (verb->get_name() == arguments[i]) chosen = verb;
+        }
+        if (chosen == nullptr)
+            throw ruche::InputError(
+                {}, fmt::format("\"{}\" is none of {}{}", arguments[i], fmt::join(names, ", "),
+                                ruche::did_you_mean(arguments[i], {names.begin(), names.end()})));
+        app = chosen;
+    }
+}
 
 int run(int count, char** arguments) {
     CLI::App program(
@@ -35,6 +56,7 @@ int run(int count, char** arguments) {
     ruche::add_pattern(program, action);
     ruche::add_cards(program, action);
     ruche::add_template(program, action);
+    check_verbs(&program, count, arguments);
     try {
         program.parse(count, arguments);
     } catch (const CLI::ParseError& wrong) {

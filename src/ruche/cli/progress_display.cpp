@@ -25,6 +25,7 @@ void ProgressDisplay::show(const Progress& progress) {
     const bool new_phase = phase_ != progress.phase;
     const auto pause = terminal_ ? 50ms : 2000ms;
     if (!new_phase && progress.fraction < 1.0 && now - last_ < pause) return;
+    if (!terminal_ && progress.fraction == 0.0) return;  // only announces: nothing is known yet
     phase_ = progress.phase;
     last_ = now;
     if (terminal_)

@@ -11,8 +11,9 @@ namespace ruche {
 
 namespace {
 
-constexpr int coarse = 128;   // points around a border while looking for its ends
-constexpr int finest = 2048;  // at most so many for the line itself
+constexpr int coarse = 128;        // points around a border while looking for its ends
+constexpr int finest = 2048;       // at most so many for the line itself
+constexpr double rounding = 1e-9;  // mm: shorter pieces between crossings are none
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
 /// A border by evenly spaced points, seen as two sides between two of them, the ends.
@@ -98,7 +99,7 @@ int points_in_cap(const Sides& sides, const Polyline& line, double width, bool f
         const double t = static_cast<double>(from_end ? sides.steps() - k : k) / sides.steps();
         const Vec2& here = from_end ? line[line.size() - 1 - k] : line[k];
         if ((here - (from_end ? line.back() : line.front())).norm() > width) break;
-        if ((sides.one(t) - sides.other(t)).norm() > 0.9 * width) break;
+        if ((sides.one(t) - sides.other(t)).norm() > 0.98 * width) break;
     }
     return k;
 }
@@ -154,7 +155,7 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
             if (turn == 0.0) continue;
             const double t = cross(c - a, d - c) / turn;
             const double s = cross(c - a, along) / turn;
-            if (t > 0.0 && t < 1.0 && s >= 0.0 && s <= 1.0) at.push_back(t);
+            if (t > 0.0 && t < 1.0 && s >= -rounding && s <= 1.0 + rounding) at.push_back(t);
         }
     };
     for (const Polygon& polygon : region) {
@@ -206,7 +207,7 @@ Polyline strip_midline(const Polygon& strip) {
 Polyline midline(const Polygon& polygon) {
     if (polygon.outer.size() < 3) return {};
     if (polygon.holes.size() == 1 && is_ring(polygon)) return ring_midline(polygon);
-    return strip_midline(polygon);
+    return strip_midline({polygon.outer, {}});
 }
 
 std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Region& region,
@@ -226,7 +227,7 @@ std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Re
             const std::vector<double> at = crossings(a, b, region);
             for (std::size_t k = 1; k < at.size(); ++k) {
                 const double middle = 0.5 * (at[k - 1] + at[k]);
-                if (at[k] <= at[k - 1]) continue;
+                if ((at[k] - at[k - 1]) * (b - a).norm() < rounding) continue;
                 if (!contains(region, a + middle * (b - a))) {
                     finish();
                     continue;

@@ -45,7 +45,16 @@ Pattern scene_pattern(const Scene& scene) {
     const Drawing drawing = read_drawing(
         resolved_path(scene, scene.pattern.svg),
         {.flatten_tolerance_mm = scene.pattern.flatten_tolerance_mm, .width_mm = scene.pattern.width_mm});
-    return make_pattern(drawing, print_rules(scene));
+    try {
+        return make_pattern(drawing, print_rules(scene));
+    } catch (const InputError& error) {
+        // What the importer left out may be why nothing is left to print.
+        std::string advice = error.advice();
+        constexpr std::size_t most = 2;
+        for (std::size_t i = 0; i < std::min(most, drawing.warnings.size()); ++i)
+            advice += "\n  warning: " + drawing.warnings[i];
+        throw InputError(error.place(), error.problem(), advice);
+    }
 }
 
 /// Refuses a mesh that no machine could solve before trying to make it.
