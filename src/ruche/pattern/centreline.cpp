@@ -91,15 +91,16 @@ Polyline between(const Sides& sides) {
     return line;
 }
 
-// How many points at the start of the line lie within a width of the end and between sides that still
-// diverge.
+// How many points at an end of the line lie in the strip's cap, where its sides do not face each other yet:
+// within half a width, and on up to a width while the sides still diverge.
 int points_in_cap(const Sides& sides, const Polyline& line, double width, bool from_end) {
     int k = 0;
     for (; k < sides.steps() / 4; ++k) {
         const double t = static_cast<double>(from_end ? sides.steps() - k : k) / sides.steps();
         const Vec2& here = from_end ? line[line.size() - 1 - k] : line[k];
-        if ((here - (from_end ? line.back() : line.front())).norm() > width) break;
-        if ((sides.one(t) - sides.other(t)).norm() > 0.98 * width) break;
+        const double distance = (here - (from_end ? line.back() : line.front())).norm();
+        if (distance > width) break;
+        if (distance > 0.5 * width && (sides.one(t) - sides.other(t)).norm() > 0.98 * width) break;
     }
     return k;
 }
@@ -166,6 +167,22 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
     return at;
 }
 
+constexpr std::size_t few = 3;  // points: directions are taken over so many, single steps are noisy
+
+// Moves every point to the middle of the cross-section through it, where the border is near on both sides.
+Polyline recentred(const Polyline& line, const Polygon& strip, double width) {
+    Polyline result = line;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const Vec2 along = line[std::min(i + few, line.size() - 1)] - line[i < few ? 0 : i - few];
+        if (along.norm() < rounding || !contains({strip}, line[i])) continue;
+        const Vec2 across = Vec2(-along.y(), along.x()).normalized() * (1.5 * width);
+        const double left = crossings(line[i], line[i] + across, {strip})[1];
+        const double right = crossings(line[i], line[i] - across, {strip})[1];
+        if (left < 1.0 && right < 1.0) result[i] += 0.5 * (left - right) * across;
+    }
+    return result;
+}
+
 // The line with its ends inside the strip's caps, where the sides do not face each other, replaced by
 // straight ones up to the border.
 Polyline with_straight_ends(const Sides& sides, const Polygon& strip) {
@@ -179,8 +196,8 @@ Polyline with_straight_ends(const Sides& sides, const Polygon& strip) {
         const double reach = crossings(end, end + ahead, {strip})[1];
         return reach < 1.0 ? Vec2(end + reach * ahead) : end;
     };
-    if (inner.size() < 4) return line;
-    constexpr std::size_t few = 3;  // the direction a few points further in is less noisy
+    if (inner.size() <= few) return line;
+    for (int round = 0; round < 2; ++round) inner = recentred(inner, strip, width);
     const Vec2 start = extended(inner.front(), inner[few]);
     const Vec2 end = extended(inner.back(), inner[inner.size() - 1 - few]);
     inner.insert(inner.begin(), start);

@@ -40,7 +40,8 @@ TEST_CASE("midline: of a curved strip it follows the middle arc") {
     const Region strip = stroke(arc, false, {.width = 1.2, .cap = LineCap::round});
     REQUIRE(strip.size() == 1);
     const Polyline line = midline(strip[0]);
-    for (const Vec2& p : line) CHECK(std::abs(p.norm() - 10.0) < 0.1);
+    // The last millimetre or so at each end is straight: 1.2^2 / (2 * 10) = 0.072 off the arc.
+    for (const Vec2& p : line) CHECK(std::abs(p.norm() - 10.0) < 0.075);
     // The arc is 45 mm long, round caps add 0.6 at each end.
     CHECK(length(line) == doctest::Approx(46.2).epsilon(0.01));
 }
@@ -54,7 +55,7 @@ TEST_CASE("midline: of a wave it stays near the line that was stroked") {
         for (std::size_t i = 1; i < wave.size(); ++i) {
             nearest = std::min(nearest, distance_to_segment(p, wave[i - 1], wave[i]));
         }
-        if (p.x() > 0.0 && p.x() < 40.0) CHECK(nearest < 0.15);
+        if (p.x() > 0.0 && p.x() < 40.0) CHECK(nearest < 0.05);
     }
 }
 
