@@ -118,4 +118,4 @@ def test_assimp_reads_the_glb_in_metres_with_three_materials(folder):
 def test_assimp_converts_the_glb_to_another_format(folder, tmp_path):
     target = tmp_path / "again.stl"
     subprocess.run(["assimp", "export", folder / "shape.glb", target], check=True, capture_output=True)
-    assert len(triangles(meshio.read(target))) > 2 * 30 * 20
+    assert target.read_text().count("facet normal") > 2 * 30 * 20

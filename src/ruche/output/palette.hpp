@@ -22,8 +22,8 @@ struct Colour {
 
 /// The colours of everything that shows a result, so that a picture, a page and a viewer agree.
 namespace palette {
-inline constexpr Colour fabric{{240, 178, 66}};       // honey
-inline constexpr Colour plastic_front{{52, 44, 48}};  // dark comb
+inline constexpr Colour fabric{{244, 186, 82}};       // honey
+inline constexpr Colour plastic_front{{56, 48, 52}};  // dark comb
 inline constexpr Colour plastic_back{{38, 84, 96}};   // petrol
 inline constexpr Colour paper{{246, 240, 231}};       // warm white
 inline constexpr Colour ink{{66, 56, 50}};

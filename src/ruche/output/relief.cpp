@@ -16,8 +16,10 @@ namespace {
 struct Patches {
     std::vector<Triangle> triangles;      ///< of nodes, only the raised ones; counter-clockwise from `side`
     std::vector<double> height;           ///< per raised triangle
+    std::vector<int> source;              ///< per raised triangle: its number in the mesh
     std::vector<int> vertex;              ///< per node
     std::vector<std::array<int, 2>> rim;  ///< border edges of patches, nodes; the patch lies to the left
+    std::vector<int> rim_source;          ///< per border edge: the triangle it bounds
 };
 
 bool usable(const Triangle& t, const std::vector<Vec3>& shape) {
@@ -71,11 +73,13 @@ Patches cut_apart(const TriangleMesh& mesh, const std::vector<Vec3>& shape, std:
                                 node_of(3 * t + 2, tri[2])};
         patches.triangles.push_back({nodes[0], nodes[second], nodes[3 - second]});
         patches.height.push_back(height[t]);
+        patches.source.push_back(t);
     }
     for (const RimEdge& e : rim) {
         const int a = node[root(3 * e.triangle + (e.local + second) % 3)];
         const int b = node[root(3 * e.triangle + (e.local + 3 - second) % 3)];
         patches.rim.push_back({a, b});
+        patches.rim_source.push_back(e.triangle);
     }
     return patches;
 }
@@ -142,6 +146,7 @@ Relief raise(const TriangleMesh& mesh, const std::vector<Vec3>& shape, std::span
     for (std::size_t n = 0; n < nodes; ++n)
         add(n, position[n] + frame.height[n] * normal[n] - radius(n) * frame.outwards[n], normal[n]);
     relief.triangles = patches.triangles;
+    relief.source = patches.source;
 
     // Each rim node carries a chain of points from the cover down to the base.
     const int segments = std::max(1, options.segments);
@@ -162,8 +167,9 @@ Relief raise(const TriangleMesh& mesh, const std::vector<Vec3>& shape, std::span
         add(n, position[n] + options.base * normal[n], facing);
         return chain[n];
     };
-    for (const auto& [a, b] : patches.rim) {
-        const int from = chain_of(a), to = chain_of(b);
+    for (std::size_t e = 0; e < patches.rim.size(); ++e) {
+        const int from = chain_of(patches.rim[e][0]), to = chain_of(patches.rim[e][1]);
+        relief.source.insert(relief.source.end(), 2 * (segments + 1), patches.rim_source[e]);
         for (int k = 0; k <= segments; ++k) {
             relief.triangles.push_back({from + k, from + k + 1, to + k});
             relief.triangles.push_back({to + k, from + k + 1, to + k + 1});

@@ -14,6 +14,7 @@ struct Relief {
     std::vector<Vec3> normals;    ///< unit, outwards
     std::vector<Vec2> layout;     ///< where in the layout the point belongs, mm
     std::vector<Triangle> triangles;
+    std::vector<int> source;  ///< per triangle: the layout's triangle it covers or bounds
 };
 
 struct ReliefOptions {

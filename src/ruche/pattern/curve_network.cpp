@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "ruche/core/document.hpp"
 #include "ruche/core/error.hpp"
+#include "ruche/core/text_scan.hpp"
 #include "ruche/pattern/generators.hpp"
 
 namespace ruche {
@@ -45,10 +45,8 @@ std::vector<std::string_view> cells_of(std::string_view line) {
     return cells;
 }
 
-bool read_number(std::string_view text, double& number) {
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(number);
+bool read_coordinate(std::string_view text, double& number) {
+    return read_number(text, number) && std::isfinite(number);
 }
 
 struct Curve {
@@ -65,11 +63,10 @@ class CurveReader {
         const std::string text = read_file(file_, "table of curves", longest_file);
         std::string_view rest = text;
         if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-        while (!rest.empty()) {
-            const auto end = rest.find('\n');
-            ++line_;
-            add_line(rest.substr(0, end));
-            rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+        for (TextScan scan(rest); !scan.at_end();) {
+            const std::string_view line = scan.take_line();
+            line_ = scan.line();
+            add_line(line);
         }
         if (curves_.empty()) throw InputError({.file = file_}, "no points in this file", advice);
         return std::move(curves_);
@@ -88,7 +85,7 @@ class CurveReader {
         const bool named = cells.size() == 3;
         if (cells.size() < 2 || cells.size() > 3)
             fail(fmt::format("{} columns, expected 2 or 3", cells.size()));
-        if (!read_number(cells[named ? 1 : 0], x) || !read_number(cells[named ? 2 : 1], y)) {
+        if (!read_coordinate(cells[named ? 1 : 0], x) || !read_coordinate(cells[named ? 2 : 1], y)) {
             if (columns_ == 0 && !header_seen_) {
                 header_seen_ = true;
                 return;

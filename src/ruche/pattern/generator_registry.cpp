@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <charconv>
-
 #include "ruche/core/suggest.hpp"
+#include "ruche/core/text_scan.hpp"
 #include "ruche/pattern/generators.hpp"
 
 namespace ruche {
@@ -14,12 +13,9 @@ namespace {
 using Options = std::map<std::string, std::string>;
 
 template <class Number>
-Number read_number(const std::string& text, const Place& place, const char* expected) {
+Number number_from(const std::string& text, const Place& place, const char* expected) {
     Number number{};
-    const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
-    const char* end = text.data() + text.size();
-    const auto [stop, error] = std::from_chars(begin, end, number);
-    if (error != std::errc() || stop != end || begin == end)
+    if (!read_number(text, number))
         throw InputError(place, fmt::format("\"{}\" is not {}", text, expected),
                          text.find(',') != std::string::npos ? "Write decimals with a point." : "");
     return number;
@@ -28,9 +24,9 @@ Number read_number(const std::string& text, const Place& place, const char* expe
 FieldValue read_value(const std::string& text, const FieldInfo& field, const Place& place) {
     switch (field.kind) {
         case FieldKind::number:
-            return read_number<double>(text, place, "a number");
+            return number_from<double>(text, place, "a number");
         case FieldKind::integer:
-            return read_number<int>(text, place, "a whole number");
+            return number_from<int>(text, place, "a whole number");
         case FieldKind::boolean:
             if (text == "true") return true;
             if (text == "false") return false;

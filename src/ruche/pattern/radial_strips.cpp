@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 #include "ruche/core/error.hpp"
+#include "ruche/core/text_scan.hpp"
 #include "ruche/pattern/generators.hpp"
 #include "ruche/pattern/tiling.hpp"
 
@@ -26,13 +26,6 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
 }
 
-template <class Number>
-bool read_number(std::string_view text, Number& number) {
-    text = trimmed(text);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size();
-}
-
 [[noreturn]] void fail(const std::string& problem) {
     throw InputError({.key = "rings"}, problem,
                      "Write \"radius : count, radius : count, ...\", radii in mm growing outward, such as "
@@ -46,8 +39,8 @@ std::vector<Ring> read_rings(std::string_view text) {
         const std::string_view entry = trimmed(text.substr(0, comma));
         const auto colon = entry.find(':');
         Ring ring;
-        if (colon == std::string_view::npos || !read_number(entry.substr(0, colon), ring.radius) ||
-            !read_number(entry.substr(colon + 1), ring.count))
+        if (colon == std::string_view::npos || !read_number(trimmed(entry.substr(0, colon)), ring.radius) ||
+            !read_number(trimmed(entry.substr(colon + 1)), ring.count))
             fail(fmt::format("\"{}\" is not a ring", entry));
         if (!std::isfinite(ring.radius) || ring.radius <= 0 || ring.count < 1 || ring.count > most_strips)
             fail(fmt::format("\"{}\": radius and count must be positive (at most {} strips)", entry,

@@ -62,7 +62,7 @@ class Newton {
         }
     }
 
-    Equilibrium run(Eigen::VectorXd x);
+    Equilibrium run(const Eigen::VectorXd& start);
 
   private:
     /// rms rotation of a step above which the sheet is "turning" and the Gauss-Newton form is the better
@@ -222,8 +222,8 @@ void Newton::report() const {
                       " mJ, residual " + short_number(residual()) + " N"});
 }
 
-Equilibrium Newton::run(Eigen::VectorXd x) {
-    x_ = std::move(x);
+Equilibrium Newton::run(const Eigen::VectorXd& start) {
+    x_ = retraction_.meet_supports(start);
     Equilibrium result;
     double rotation = infinity;
     int gauss_newton_left = 0;
@@ -320,9 +320,7 @@ Equilibrium solve(const Model& model, const SolveOptions& options, const Control
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
     Newton newton(model, options, control);
-    Retraction retraction(model);
-    Eigen::VectorXd x = retraction.meet_supports(start != nullptr ? *start : noisy_start(model, options));
-    Equilibrium result = newton.run(std::move(x));
+    Equilibrium result = newton.run(start != nullptr ? *start : noisy_start(model, options));
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
 }

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ruche/geometry/triangle_mesh.hpp"
+#include "ruche/meshing/print_mesh.hpp"
+
+namespace ruche {
+
+/// A triangle mesh as a file has it, before anyone looked at what it means.
+struct RawMesh {
+    std::vector<Vec3> vertices;
+    std::vector<Triangle> triangles;  ///< indices as written: they may point anywhere
+    std::vector<Print> print;         ///< per triangle
+};
+
+/// PLY, text or binary of either byte order: vertices x, y and z if any; triangles with the face properties
+/// `front_mm` and `back_mm` (either may be missing) or `thickness_mm` (negative: on the back), and optional
+/// `front_modulus_mpa`, `back_modulus_mpa`. Everything else in the file is skipped. Throws InputError.
+RawMesh read_ply(const std::string& path);
+
+/// OBJ with the thickness of its triangles from a CSV table: triangle (in the file's order, from 0),
+/// front_mm and, where wanted, back_mm; triangles that are not listed are bare. Throws InputError.
+RawMesh read_obj(const std::string& path, const std::string& thickness_table);
+
+}  // namespace ruche

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "ruche/core/control.hpp"
+#include "ruche/scene/result.hpp"
+
+namespace ruche {
+
+/// Writes what `result.scene.output` asks for, and report.json, into the folder `dir` (made if needed):
+/// shape and layout as .obj, .ply and .vtu, shape.glb, picture.png. All files are first written completely
+/// under temporary names; only then does the new result replace an earlier one, report.json last, and files
+/// of the earlier result that this one does not have are removed. `energy_density` (mJ per mm^2 of layout,
+/// one per triangle, or none) becomes a field of the surfaces. Returns the paths written. Throws
+/// std::runtime_error with path and reason; the earlier result is then as it was. `control.stop` is not
+/// looked at: an interrupted run writes its last state.
+std::vector<std::string> write_outputs(const Result& result, const std::string& dir,
+                                       const Control& control = {},
+                                       std::span<const double> energy_density = {});
+
+}  // namespace ruche

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "ruche/energy/model.hpp"
+#include "ruche/meshing/print_mesh.hpp"
+#include "ruche/pattern/pattern.hpp"
+#include "ruche/scene/scene.hpp"
+
+namespace ruche {
+
+/// From the scene to what the solver needs, step by step; each step is data in, data out, and throws
+/// InputError.
+
+/// The printed pattern of a drawing or a generator (not of a mesh file).
+Pattern scene_pattern(const Scene& scene);
+
+/// The layout mesh: made from the pattern, or read from the mesh file. Carries the pattern's warnings.
+PrintMesh scene_mesh(const Scene& scene);
+
+/// Mesh, material, loads and supports. Throws when a support or force takes hold of no vertex, two supports
+/// take a vertex to different places, or a piece of the sheet would fall.
+ModelInput scene_model(const Scene& scene, const PrintMesh& layout);
+
+}  // namespace ruche

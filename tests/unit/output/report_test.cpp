@@ -1,0 +1,132 @@
+#include "ruche/output/report.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+using namespace ruche;
+using Json = nlohmann::json;
+
+namespace {
+
+/// A square of two printed triangles, bent nowhere, with one strip along the diagonal.
+Result small_result() {
+    Result result;
+    result.layout.mesh.vertices = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+    result.layout.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    result.layout.print = {{.front = 0.6}, {}};
+    result.layout.strip = {0, -1};
+    MeshedStrip strip{.id = "strip-1", .thickness = 0.6};
+    strip.centreline = {{{0, {0.8, 0.1, 0.1}}, {0, {0.5, 0.25, 0.25}}, {0, {0.2, 0.4, 0.4}}}};
+    result.layout.strips = {strip};
+    for (const Vec2& x : result.layout.mesh.vertices)
+        result.shape.emplace_back(0.5 * x.x(), 0.5 * x.y(), 1.0);
+    result.equilibrium.status = SolveStatus::converged;
+    result.equilibrium.stable = true;
+    result.equilibrium.energy = {
+        .fabric_membrane = 1.0, .fabric_bending = 0.5, .plastic = 2.0, .gravity = -0.25};
+    result.equilibrium.residual = 1e-10;
+    result.equilibrium.iterations = 9;
+    result.equilibrium.factorizations = 12;
+    result.equilibrium.x = Eigen::VectorXd::Zero(14);
+    result.assumptions = {"fabric_thickness = 0.46 mm: not in the paper"};
+    result.warnings = {"strip-1 was cut"};
+    result.seconds = {{"read", 0.1}, {"release", 2.5}};
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("report: it has every key that others rely on") {
+    const Json json = Json::parse(report_json(small_result()));
+    CHECK(json["status"] == "converged");
+    CHECK(json["stable"] == true);
+    CHECK(json["energy_mJ"]["total"] == 3.25);
+    CHECK(json["energy_mJ"]["fabric_membrane"] == 1.0);
+    CHECK(json["energy_mJ"]["fabric_bending"] == 0.5);
+    CHECK(json["energy_mJ"]["plastic"] == 2.0);
+    CHECK(json["energy_mJ"]["gravity"] == -0.25);
+    CHECK(json["residual_N"] == 1e-10);
+    CHECK(json["mesh"] == Json({{"vertices", 4}, {"triangles", 2}, {"unknowns", 14}}));
+    CHECK(json["solver"]["iterations"] == 9);
+    CHECK(json["solver"]["factorizations"] == 12);
+    CHECK(json["solver"].contains("seconds"));
+    for (const char* key : {"max_strain_margin", "min_area_ratio", "max_dihedral_deg", "self_intersections"})
+        CHECK(json["health"].contains(key));
+    REQUIRE(json["strips"].size() == 1);
+    CHECK(json["strips"][0]["id"] == "strip-1");
+    CHECK(json["strips"][0]["stretch"] == doctest::Approx(0.5));
+    CHECK(json["strips"][0].contains("fit_rms_mm"));
+    CHECK(json["assumptions"].size() == 1);
+    CHECK(json["warnings"][0] == "strip-1 was cut");
+    CHECK(json["seconds"]["release"] == 2.5);
+    CHECK(json["shape"]["box_size_mm"] == Json({5.0, 5.0, 0.0}));
+    CHECK(json["shape"]["printed_area_mm2"] == 50.0);
+    CHECK(json["version"].get<std::string>().size() > 2);
+}
+
+TEST_CASE("report: the status has the three pinned names") {
+    Result result = small_result();
+    result.equilibrium.status = SolveStatus::not_converged;
+    CHECK(Json::parse(report_json(result))["status"] == "not_converged");
+    result.equilibrium.status = SolveStatus::interrupted;
+    CHECK(Json::parse(report_json(result))["status"] == "interrupted");
+}
+
+TEST_CASE("report: a flat strip has curvature 0 and radius null") {
+    const Json strip = Json::parse(report_json(small_result()))["strips"][0];
+    CHECK(std::abs(strip["curvature_per_mm"].get<double>()) < 1e-9);
+    CHECK(strip["radius_mm"].is_null());
+}
+
+TEST_CASE("report: every parameter stands there with value, unit and source") {
+    Result result = small_result();
+    result.scene.fabric.prestretch = {1.6, 1.65};
+    result.scene.sources["fabric.prestretch"] = {"kite.toml", 14, "fabric.prestretch"};
+    result.scene.material_sources["fabric_thickness"] = "assumed: implied by k_B";
+    const Json parameters = Json::parse(report_json(result))["parameters"];
+    for (const auto& field : fields<Material>())
+        CHECK(parameters["material"].contains(std::string(field.key)));
+    for (const auto& field : fields<SolveOptions>())
+        CHECK(parameters["solver"].contains(std::string(field.key)));
+    CHECK(parameters["fabric"]["prestretch"]["value"] == Json({1.6, 1.65}));
+    CHECK(parameters["fabric"]["prestretch"]["source"] == "kite.toml:14");
+    CHECK(parameters["material"]["fabric_thickness_mm"] ==
+          Json({{"value", 0.46}, {"unit", "mm"}, {"source", "assumed: implied by k_B"}}));
+    CHECK(parameters["mesh"]["size_mm"]["source"] == "default");
+    CHECK(parameters["model"]["edge_normals"]["value"] == "free");
+}
+
+TEST_CASE("report: lists of the scene are written out") {
+    Result result = small_result();
+    result.scene.plastic.rules = {{.match = "#ff0000", .thickness = 0.9, .side = Side::back}};
+    SupportOptions support;
+    support.max_mm = {3, 4};
+    result.scene.supports = {support};
+    result.scene.pattern.generator_options = {{"rings", "12:20"}};
+    const Json parameters = Json::parse(report_json(result))["parameters"];
+    CHECK(parameters["plastic"]["rule"][0]["match"] == "#ff0000");
+    CHECK(parameters["support"][0]["max_mm"] == Json({3.0, 4.0}));
+    CHECK(parameters["pattern"]["options"]["rings"] == "12:20");
+}
+
+TEST_CASE("report: it is valid JSON whatever the run came to") {
+    Result result = small_result();
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    result.equilibrium.energy.plastic = nan;
+    result.equilibrium.residual = std::numeric_limits<double>::infinity();
+    result.shape[2] = Vec3(nan, nan, nan);
+    result.layout.strips[0].id = "bad \xff\xfe \"quoted\" \n \x01 gr\xc3\xbcn";
+    result.warnings = {std::string("zero \0 inside", 13)};
+    const Json json = Json::parse(report_json(result));
+    CHECK(json["energy_mJ"]["plastic"].is_null());
+    CHECK(json["energy_mJ"]["total"].is_null());
+    CHECK(json["residual_N"].is_null());
+    CHECK(json["strips"][0]["curvature_per_mm"].is_null());
+    const auto id = json["strips"][0]["id"].get<std::string>();
+    CHECK(id.find("\"quoted\"") != std::string::npos);
+    CHECK(id.find("gr\xc3\xbcn") != std::string::npos);
+    CHECK(Json::parse(report_json(Result{}))["strips"].empty());
+}

@@ -1,0 +1,280 @@
+#include "ruche/pattern/generators.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "ruche/core/error.hpp"
+#include "ruche/pattern/generator_registry.hpp"
+#include "ruche/pattern/tiling.hpp"
+
+using namespace ruche;
+
+namespace {
+
+const Polyline& line_of(const DrawnStrip& strip) { return strip.lines.front().points; }
+
+std::string problem_of(std::string_view name, const std::map<std::string, std::string>& options) {
+    try {
+        (void)generate(name, options, {.file = "kite.toml", .key = "pattern.options"});
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+bool contains_text(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+/// A text file in the temporary folder that goes away with the test.
+class TextFile {
+  public:
+    explicit TextFile(const std::string& text) {
+        static int count = 0;
+        path_ = std::filesystem::temp_directory_path() /
+                ("ruche-curves-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
+                 std::to_string(++count) + ".csv");
+        std::ofstream(path_, std::ios::binary) << text;
+    }
+    ~TextFile() { std::filesystem::remove(path_); }
+    TextFile(const TextFile&) = delete;
+    TextFile& operator=(const TextFile&) = delete;
+    std::string path() const { return path_.string(); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace
+
+TEST_CASE("strip generator: the strip has its length from end to end, caps included") {
+    const GeneratedPattern butt = generate_strip({.length = 30, .width = 2});
+    REQUIRE(butt.strips.size() == 1);
+    CHECK(line_of(butt.strips[0]) == Polyline{{-15, 0}, {15, 0}});
+    CHECK(butt.fabric.empty());
+    const GeneratedPattern round = generate_strip({.length = 30, .width = 2, .cap = StripCap::round});
+    CHECK(line_of(round.strips[0]) == Polyline{{-14, 0}, {14, 0}});
+    CHECK(round.strips[0].cap == LineCap::round);
+    CHECK_THROWS_AS(generate_strip({.length = 1, .width = 2}), InputError);
+}
+
+TEST_CASE("staggered generator: rows are a pitch apart and shifted by half a period") {
+    const GeneratedPattern p =
+        generate_staggered({.length = 10, .axial_gap = 2, .pitch = 3, .rows = 3, .strips_per_row = 2});
+    // Rows of 2, 1 + two halves, 2.
+    REQUIRE(p.strips.size() == 7);
+    CHECK(line_of(p.strips[0]) == Polyline{{-11, -3}, {-1, -3}});
+    CHECK(line_of(p.strips[1]) == Polyline{{1, -3}, {11, -3}});
+    CHECK(line_of(p.strips[2]) == Polyline{{-11, 0}, {-7, 0}});
+    CHECK(line_of(p.strips[3]) == Polyline{{-5, 0}, {5, 0}});
+    CHECK(line_of(p.strips[4]) == Polyline{{7, 0}, {11, 0}});
+    CHECK(line_of(p.strips[6]) == Polyline{{1, 3}, {11, 3}});
+    const GeneratedPattern ragged = generate_staggered(
+        {.length = 10, .axial_gap = 2, .pitch = 3, .rows = 3, .strips_per_row = 2, .half_strips = false});
+    CHECK(ragged.strips.size() == 5);
+}
+
+TEST_CASE("staggered generator: every other row can be on the back") {
+    const GeneratedPattern p = generate_staggered({.rows = 2, .strips_per_row = 1, .alternate_sides = true});
+    CHECK(p.strips.front().side == Side::front);
+    CHECK(p.strips.back().side == Side::back);
+}
+
+TEST_CASE("radial generator: the torus has 80 evenly spread strips that end on the outline") {
+    const GeneratedPattern p = generate_radial({});
+    REQUIRE(p.strips.size() == 80);
+    std::vector<double> angles;
+    for (const DrawnStrip& strip : p.strips) {
+        const Polyline& line = line_of(strip);
+        // Corners of the butt end on the circle of the fabric.
+        CHECK(std::hypot(line[1].norm(), 0.5) == doctest::Approx(34).epsilon(1e-12));
+        double angle = std::atan2(line[1].y(), line[1].x());
+        angles.push_back(angle < -1e-9 ? angle + 2 * M_PI : angle);
+    }
+    CHECK(std::hypot(line_of(p.strips[0])[0].norm(), 0.5) == doctest::Approx(12).epsilon(1e-12));
+    CHECK(line_of(p.strips[20])[0].norm() == doctest::Approx(16.5));
+    CHECK(line_of(p.strips[40])[0].norm() == doctest::Approx(22));
+    std::ranges::sort(angles);
+    for (int i = 0; i < 80; ++i) CHECK(angles[i] == doctest::Approx(2 * M_PI * i / 80).epsilon(1e-9));
+    REQUIRE(p.fabric.size() == 2);
+    for (const Vec2& x : p.fabric[0]) CHECK(x.norm() == doctest::Approx(34).epsilon(1e-12));
+    for (const Vec2& x : p.fabric[1]) CHECK(x.norm() == doctest::Approx(12).epsilon(1e-12));
+}
+
+TEST_CASE("radial generator: strips that were inserted keep as far from the others as they can") {
+    const GeneratedPattern p = generate_radial({.rings = "12:8, 20:4"});
+    const Polyline& line = line_of(p.strips[8]);
+    CHECK(std::atan2(line[1].y(), line[1].x()) == doctest::Approx(M_PI / 8));
+}
+
+TEST_CASE("star generator: arms run along the tiling's edges towards the neighbours and do not touch") {
+    const StarTilingOptions options;
+    const GeneratedPattern p = generate_stars(options);
+    REQUIRE(p.strips.size() == 24);  // 6 at one edge, 6 at two, 12 at sqrt(7) edges from the centre
+    int facing = 0;
+    for (const DrawnStrip& star : p.strips) {
+        REQUIRE(star.lines.size() == 3);
+        for (const DrawnLine& arm : star.lines) {
+            const Vec2 along = (arm.points[1] - arm.points[0]).normalized();
+            const Vec2 neighbour = arm.points[0] + options.edge * along;
+            for (const DrawnStrip& other : p.strips) facing += (line_of(other)[0] - neighbour).norm() < 1e-9;
+            const Vec2 across(-along.y(), along.x());
+            for (const double side : {0.6, -0.6})
+                CHECK((arm.points[1] + side * across).norm() <= options.radius - options.rim + 1e-9);
+        }
+    }
+    CHECK(facing == 24 * 3 - 12);  // only the outermost twelve look outward
+    CHECK((line_of(p.strips[0])[1] - line_of(p.strips[0])[0]).norm() == doctest::Approx(2.9));
+    CHECK_THROWS_AS(generate_stars({.arm = 3.2}), InputError);
+    CHECK_THROWS_AS(generate_stars({.width = 3}), InputError);
+    CHECK_THROWS_AS(generate_stars({.radius = 3}), InputError);
+}
+
+TEST_CASE("hexagon generator: neighbours are the gap apart, outlined or filled") {
+    const HexagonTilingOptions options{.edge = 6, .gap = 1.5, .style = HexagonStyle::filled, .radius = 16};
+    const GeneratedPattern p = generate_hexagons(options);
+    REQUIRE(p.strips.size() == 7);
+    const auto inradius = [](const Polyline& hexagon) { return hexagon[0].norm() * std::sqrt(3.0) / 2; };
+    const double cell = 6 * std::sqrt(3.0) / 2;
+    CHECK(2 * (cell - inradius(line_of(p.strips[0]))) == doctest::Approx(1.5));
+    CHECK(p.strips[0].width == 0.0);
+    CHECK(p.strips[0].lines[0].closed);
+    HexagonTilingOptions outlined = options;
+    outlined.style = HexagonStyle::outlined;
+    outlined.width = 1.0;
+    const GeneratedPattern q = generate_hexagons(outlined);
+    CHECK(2 * (cell - inradius(line_of(q.strips[0])) - 0.5) == doctest::Approx(1.5));
+    CHECK_THROWS_AS(generate_hexagons({.edge = 1, .gap = 2}), InputError);
+    CHECK_THROWS_AS(generate_hexagons({.edge = 2, .gap = 0.5, .width = 1.5}), InputError);
+}
+
+TEST_CASE("tiling: vertices are all there, each once, each with three neighbours") {
+    const auto vertices = hexagon_vertices(2.0, 20.0);
+    for (const TilingVertex& v : vertices) {
+        if (v.at.norm() > 17.9) continue;
+        int neighbours = 0;
+        int same = 0;
+        for (const TilingVertex& w : vertices) {
+            const double distance = (v.at - w.at).norm();
+            same += distance < 1e-6;
+            neighbours += std::abs(distance - 2.0) < 1e-6;
+        }
+        CHECK(same == 1);
+        CHECK(neighbours == 3);
+    }
+}
+
+TEST_CASE("curve generator: points are read whatever separates them, curves split at empty lines") {
+    const TextFile file(
+        "\xEF\xBB\xBFx_mm, y_mm\r\n# a comment\r\n0, 0\r\n10.5, -2e1\r\n\r\n1;1\n2\t1\n2 2\n1,1\n");
+    const GeneratedPattern p = generate_curves({.file = file.path(), .width = 1.5});
+    REQUIRE(p.strips.size() == 2);
+    CHECK(line_of(p.strips[0]) == Polyline{{0, 0}, {10.5, -20}});
+    CHECK_FALSE(p.strips[0].lines[0].closed);
+    CHECK(line_of(p.strips[1]) == Polyline{{1, 1}, {2, 1}, {2, 2}});
+    CHECK(p.strips[1].lines[0].closed);
+    CHECK(p.strips[1].width == 1.5);
+}
+
+TEST_CASE("curve generator: a third column names the curves") {
+    const TextFile file("curve,x_mm,y_mm\nb c,0,0\na,5,5\nb c,1,0\na,6,5\nb-c,0,9\nb-c,1,9\nlone,3,3\n");
+    const GeneratedPattern p = generate_curves({.file = file.path()});
+    REQUIRE(p.strips.size() == 3);
+    CHECK(p.strips[0].id == "curve-b-c");
+    CHECK(line_of(p.strips[0]) == Polyline{{0, 0}, {1, 0}});
+    CHECK(p.strips[1].id == "curve-a");
+    CHECK(p.strips[2].id == "curve-b-c-2");
+    REQUIRE(p.warnings.size() == 1);
+    CHECK(contains_text(p.warnings[0], "lone"));
+}
+
+TEST_CASE("curve generator: what is no table of points is an error with its line") {
+    const auto message = [](const char* text) {
+        const TextFile file(text);
+        try {
+            (void)generate_curves({.file = file.path()});
+        } catch (const InputError& error) {
+            return std::to_string(error.place().line) + " " + error.problem();
+        }
+        return std::string();
+    };
+    CHECK(contains_text(message("0,0\n1,x\n"), "2 "));
+    CHECK(contains_text(message("0,0\n1,nan\n"), "2 "));
+    CHECK(contains_text(message("0,0\n1\n"), "2 1 columns"));
+    CHECK(contains_text(message("0,0\n1,5;2,5\n"), "2 4 columns"));
+    CHECK(contains_text(message("0,0\na,1,1\n"), "2 the number of columns changes"));
+    CHECK(contains_text(message("0,0\n1e9,1\n"), "2 "));
+    CHECK(contains_text(message(""), "no points"));
+    CHECK(contains_text(message("# nothing\n"), "no points"));
+    CHECK(contains_text(message("1,1\n1,1\n"), "no curve"));
+}
+
+TEST_CASE("generator registry: every generator runs with its defaults and has unique ids") {
+    const TextFile file("0,0\n10,0\n");
+    for (const std::string& name : generator_names()) {
+        CAPTURE(name);
+        std::map<std::string, std::string> options;
+        if (name == "curves") options["file"] = file.path();
+        const GeneratedPattern p = generate(name, options);
+        CHECK(p.name == name);
+        CHECK_FALSE(p.strips.empty());
+        std::set<std::string> ids;
+        for (const DrawnStrip& strip : p.strips) CHECK(ids.insert(strip.id).second);
+    }
+}
+
+TEST_CASE("generator registry: options are read from text and told back in the description") {
+    const GeneratedPattern p =
+        generate("radial", {{"rings", "15:10"}, {"width_mm", "1.25"}, {"inner_mm", "14"}});
+    CHECK(p.strips.size() == 10);
+    CHECK(p.strips[0].width == 1.25);
+    CHECK(contains_text(p.description, "width_mm = 1.25"));
+    CHECK(contains_text(p.description, "rings = 15:10"));
+    CHECK(contains_text(p.description, "outer_mm = 34"));
+}
+
+TEST_CASE("generator registry: help knows every option with its default, unit and range") {
+    for (const GeneratorInfo& about : generators()) {
+        CHECK_FALSE(about.summary.empty());
+        for (const GeneratorOption& option : about.options) {
+            CAPTURE(option.key);
+            CHECK_FALSE(option.meaning.empty());
+            CHECK((option.unit == "mm") == option.key.ends_with("_mm"));
+        }
+    }
+    const GeneratorInfo strip = generators().front();
+    CHECK(strip.options[0].key == "length_mm");
+    CHECK(strip.options[0].initial == "30");
+    CHECK(strip.options[2].range == "butt | round");
+}
+
+TEST_CASE("generator registry: mistakes are errors that name the option and help") {
+    CHECK(contains_text(problem_of("radail", {}), "did you mean radial?"));
+    CHECK(contains_text(problem_of("radial", {{"width", "1"}}), "did you mean width_mm?"));
+    CHECK(
+        contains_text(problem_of("radial", {{"width_mm", "1"}, {"x", "1"}}), "kite.toml: pattern.options.x"));
+    CHECK(contains_text(problem_of("strip", {{"width_mm", "wide"}}), "\"wide\" is not a number"));
+    CHECK(contains_text(problem_of("strip", {{"width_mm", "1,5"}}), "decimals with a point"));
+    CHECK(contains_text(problem_of("strip", {{"width_mm", ""}}), "is not a number"));
+    CHECK(contains_text(problem_of("strip", {{"width_mm", "nan"}}), "not a finite number"));
+    CHECK(contains_text(problem_of("strip", {{"width_mm", "0.01"}}), "outside [0.1, 1000]"));
+    CHECK(contains_text(problem_of("strip", {{"cap", "rond"}}), "did you mean round?"));
+    CHECK(contains_text(problem_of("staggered", {{"rows", "2.5"}}), "not a whole number"));
+    CHECK(contains_text(problem_of("staggered", {{"half_strips", "yes"}}), "neither true nor false"));
+    CHECK(contains_text(problem_of("staggered", {{"pitch_mm", "0.9"}}), "pattern.options.pitch_mm"));
+    CHECK(contains_text(problem_of("staggered", {{"rows", "2000"}, {"strips_per_row", "2000"}}), "too many"));
+    for (const char* rings : {"", "12", "12:", ":20", "12:20,", "12:-3", "12:0", "nan:3", "12:20; 14:3",
+                              "9:20", "12:20, 11:20", "33.9:20", "12:99999999999", "12:200"}) {
+        CAPTURE(rings);
+        CHECK(contains_text(problem_of("radial", {{"rings", rings}}), "pattern.options.rings"));
+    }
+    CHECK(contains_text(problem_of("radial", {{"inner_mm", "40"}}), "inner_mm"));
+    CHECK(contains_text(
+        problem_of("hexagons",
+                   {{"edge_mm", "0.5"}, {"gap_mm", "0.1"}, {"style", "filled"}, {"radius_mm", "9999"}}),
+        "too many"));
+    CHECK(contains_text(problem_of("curves", {}), "no file"));
+    CHECK(contains_text(problem_of("curves", {{"file", "/nowhere/at all.csv"}}), "/nowhere/at all.csv"));
+}
