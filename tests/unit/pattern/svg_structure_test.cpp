@@ -26,7 +26,7 @@ TEST_CASE("svg structure: nested transforms multiply from the outside in") {
     CHECK(box.low == 40.0);
 }
 
-TEST_CASE("svg structure: an id, else a label, else the order names a shape; names are unique") {
+TEST_CASE("svg structure: an id, else a label, else the order names a shape uniquely") {
     const Drawing drawing = svg_text::draw(
         "<rect id='a' width='5' height='5'/><rect inkscape:label='arm left' width='5' height='5'/>"
         "<rect width='5' height='5'/><circle r='2'/><rect id='a' width='5' height='5'/>"
