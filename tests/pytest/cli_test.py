@@ -101,8 +101,8 @@ def test_a_drawing_alone_is_simulated_and_says_what_it_assumed(finished):
         assert line in run.stdout
     out = place / "d.out"
     assert report(out)["status"] == "converged" and report(out)["stable"] is True
-    names = {"shape.obj", "shape.mtl", "shape.ply", "shape.vtu", "shape.glb", "layout.obj", "layout.mtl", "layout.ply",
-             "layout.vtu", "scene.toml", "state.ruche", "report.json"}
+    names = {"shape.obj", "shape.mtl", "shape.ply", "shape.vtu", "shape.glb", "layout.obj", "layout.ply", "layout.vtu",
+             "scene.toml", "state.ruche", "report.json"}
     assert {path.name for path in out.iterdir()} == names
 
 

@@ -107,8 +107,7 @@ static ExitCode run(const SimulateArguments& arguments) {
     Control control{.stop = &interrupted()};
     if (!arguments.quiet) control.report = [&](const Progress& progress) { display.show(progress); };
     const Result result = simulate(scene, control, start);
-    control.say({"write", 0.0, "writing " + folder});
-    const std::vector<std::string> files = write_result(result, folder);
+    const std::vector<std::string> files = write_result(result, folder, control);
     display.clear();
 
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
