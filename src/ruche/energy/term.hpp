@@ -10,9 +10,9 @@
 namespace ruche {
 
 /// How far to differentiate. The last two fill the Hessian with a positive semidefinite part of it:
-/// `gauss_newton` with the material's tangent in strain space between first derivatives, no second derivatives
-/// of the strains; `gauss_newton_taut` also with the stiffness of edges in tension (dW/dL > 0), which is what
-/// holds a sheet that supports or loads keep taut.
+/// `gauss_newton` with the material's tangent in strain space between first derivatives, no second
+/// derivatives of the strains; `gauss_newton_taut` also with the stiffness of edges in tension (dW/dL > 0),
+/// which is what holds a sheet that supports or loads keep taut.
 enum class Order { value, gradient, hessian, gauss_newton, gauss_newton_taut };
 
 constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }

@@ -67,7 +67,8 @@ TEST_CASE("pattern: the margin of fabric is round, without holes, and 0 means ex
     CHECK(says(error_of([&] { make_pattern(ring, {.margin = -1.0}); }), "margin"));
 }
 
-TEST_CASE("pattern: rules match colours, CSS names, layers, classes, ids and labels; the first one wins") {
+TEST_CASE(
+    "pattern: rules match colours, CSS names, layers, classes, ids and labels, and the first one wins") {
     Shape red = stroked("one", level, 1.0, false, "#ff0000");
     Shape blue = filled("two", box(0, 5, 10, 8), "#0000ff");
     Shape layered = stroked("three", {Vec2(0, 20), Vec2(20, 20)}, 1.0);
