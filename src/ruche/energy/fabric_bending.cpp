@@ -31,7 +31,7 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
 
     const double curvature = k * sec2 * (1.0 + 3.0 * tangent * tangent);
     local.hessian.noalias() = (curvature * theta) * theta.transpose();
-    if (order == Order::gauss_newton) return local;
+    if (order != Order::hessian) return local;
     for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) {
             local.hessian.block<3, 3>(3 * left_slot[i], 3 * left_slot[j]) +=

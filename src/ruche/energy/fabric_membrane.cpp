@@ -69,12 +69,13 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     local.gradient = lengths.transpose() * slopes;
     if (!wants_hessian(order)) return local;
 
-    const bool clamp = order == Order::gauss_newton && !positive_definite(response.tangent);
+    const bool clamp = order != Order::hessian && !positive_definite(response.tangent);
     const Mat3 tangent = clamp ? positive_part(response.tangent) : response.tangent;
     const Mat3 in_lengths = e.volume * (e.strain_of_lengths.transpose() * tangent * e.strain_of_lengths);
     const Eigen::Matrix<double, 3, 9> weighted = in_lengths * lengths;
     local.hessian.noalias() = lengths.transpose() * weighted;
     if (order == Order::hessian) add_edge_length_curvature(slopes, local.hessian);
+    if (order == Order::gauss_newton_taut) add_edge_length_curvature(slopes.cwiseMax(0.0), local.hessian);
     return local;
 }
 

@@ -1,5 +1,6 @@
 #include "ruche/energy/laminate_term.hpp"
 
+#include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -121,8 +122,9 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     const Vec3 moment = stress.tail<3>();  // dW/dc
     const double sum = k.lengths.sum();
     const Vec3 p = Vec3::Constant(2.0 * sum) - 4.0 * k.lengths;
-    const double area16 = sum * sum - 2.0 * k.lengths.squaredNorm();  // 16 A^2
-    Mat3 log_slope = Mat3::Zero();                                    // g, row i: edge i
+    // 16 A^2 from the cross product: from the lengths it cancels in thin triangles.
+    const double area16 = 4.0 * (k.v[1] - k.v[0]).cross(k.v[2] - k.v[0]).squaredNorm();
+    Mat3 log_slope = Mat3::Zero();  // g, row i: edge i
     Vec3 c = strain.tail<3>();
     Vec3 c_phi = Vec3::Zero();  // dc_i/dphi_i
     for (int i = 0; i < 3; ++i) {
@@ -176,7 +178,11 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     }
     const Eigen::Matrix<double, 6, 21> weighted = in_measures * measures;
     local.hessian.noalias() = measures.transpose() * weighted;
-    if (order == Order::gauss_newton) return local;
+    if (order == Order::gauss_newton_taut) {
+        const Vec3 tension = slopes.head<3>().cwiseMax(0.0);
+        add_edge_length_curvature(tension, local.hessian);
+    }
+    if (order != Order::hessian) return local;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);
     for (int i = 0; i < 3; ++i) {

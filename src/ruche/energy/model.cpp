@@ -1,5 +1,6 @@
 #include "ruche/energy/model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -87,10 +88,20 @@ void check(const ModelInput& input) {
                 fail(key, "has a print that is not a number >= 0", "Thickness is in mm, modulus in MPa.");
         }
     }
+    for (const auto& field : fields<Material>()) {
+        check(info(field), get(input.material, field), {.key = "material." + std::string(field.key)});
+    }
+    for (const auto& field : fields<ModelOptions>()) {
+        check(info(field), get(input.options, field), {.key = "model." + std::string(field.key)});
+    }
     for (const double s : input.prestretch) {
         if (!(s > 0.0) || !std::isfinite(s))
             fail("prestretch", "must be positive", "Length on the frame over relaxed length.");
     }
+    const bool finite_loads =
+        std::isfinite(input.fabric_axis_deg) && std::isfinite(input.table.height) &&
+        std::all_of(input.gravity.begin(), input.gravity.end(), [](double g) { return std::isfinite(g); });
+    if (!finite_loads) fail("model", "axis, gravity and table height must be finite numbers", "");
     for (const Support& support : input.supports) {
         if (support.vertex < 0 || support.vertex >= mesh.vertex_count())
             fail("support", "refers to vertex " + std::to_string(support.vertex), "");
@@ -98,6 +109,7 @@ void check(const ModelInput& input) {
     for (const NodalForce& force : input.forces) {
         if (force.vertex < 0 || force.vertex >= mesh.vertex_count())
             fail("force", "refers to vertex " + std::to_string(force.vertex), "");
+        if (!force.force.allFinite()) fail("force", "is not a finite number", "Components are in N.");
     }
 }
 

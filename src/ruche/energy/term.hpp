@@ -9,11 +9,13 @@
 
 namespace ruche {
 
-/// How far to differentiate. `gauss_newton` fills the Hessian with its positive semidefinite part only: the
-/// material's tangent in strain space between first derivatives, no second derivatives of the strains.
-enum class Order { value, gradient, hessian, gauss_newton };
+/// How far to differentiate. The last two fill the Hessian with a positive semidefinite part of it:
+/// `gauss_newton` with the material's tangent in strain space between first derivatives, no second derivatives
+/// of the strains; `gauss_newton_taut` also with the stiffness of edges in tension (dW/dL > 0), which is what
+/// holds a sheet that supports or loads keep taut.
+enum class Order { value, gradient, hessian, gauss_newton, gauss_newton_taut };
 
-constexpr bool wants_hessian(Order order) { return order == Order::hessian || order == Order::gauss_newton; }
+constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }
 
 /// Value, gradient and Hessian of one element; what was not asked for is zero.
 template <int Size>

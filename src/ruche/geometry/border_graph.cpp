@@ -321,10 +321,10 @@ BorderGraph border_graph(std::span<const Region> regions, double snap) {
     return graph;
 }
 
-double simplify_borders(BorderGraph& graph, std::span<const double> tolerance, double snap) {
+std::vector<double> simplify_borders(BorderGraph& graph, std::span<const double> tolerance, double snap) {
     BorderGraph result;
     result.points = graph.points;
-    double largest = 0.0;
+    std::vector<double> largest(tolerance.size(), 0.0);
     for (const Chain& chain : chains_of(graph)) {
         double within = std::numeric_limits<double>::infinity();
         for (const int r : chain.regions) within = std::min(within, tolerance[r]);
@@ -335,7 +335,8 @@ double simplify_borders(BorderGraph& graph, std::span<const double> tolerance, d
         if (chain.closed && kept.size() < 3) {
             points = chain.points;  // smaller than the tolerance: stays as it is
         } else {
-            largest = std::max(largest, largest_gap(line, kept, chain.closed));
+            const double gap = largest_gap(line, kept, chain.closed);
+            for (const int r : chain.regions) largest[r] = std::max(largest[r], gap);
             for (std::size_t i = 0, k = 0; i < line.size() && k < kept.size(); ++i) {
                 if (line[i] == kept[k]) {
                     points.push_back(chain.points[i]);

@@ -26,9 +26,9 @@ struct BorderGraph {
 BorderGraph border_graph(std::span<const Region> regions, double snap);
 
 /// Leaves out points of chains between junctions as `simplify` does, within the smallest of `tolerance`
-/// (mm, one per region) of the regions that the chain bounds, and snaps again. Returns the largest distance
-/// of a point left out from the border that remains.
-double simplify_borders(BorderGraph& graph, std::span<const double> tolerance, double snap);
+/// (mm, one per region) of the regions that the chain bounds, and snaps again. Returns for each region the
+/// largest distance of a point left out from the border that remains.
+std::vector<double> simplify_borders(BorderGraph& graph, std::span<const double> tolerance, double snap);
 
 /// Region `r` as polygons on the graph's points.
 Region region_of(const BorderGraph& graph, int r);

@@ -111,17 +111,19 @@ class Pen {
         const Vec2 to = -half_ * left_of(after);
         const double sine = before.x() * after.y() - before.y() * after.x();
         const double cosine = before.dot(after);
-        outline_.emplace_back(vertex + from);
         if (sine < 0.0 || (sine == 0.0 && cosine > 0.0)) {  // turns right: this, the right side, is inside
-            outline_.push_back(vertex);
-        } else if (style_.join == LineJoin::round) {
+            outline_.insert(outline_.end(), {vertex + from, vertex, vertex + to});
+            return;
+        }
+        // 1 / sin(half the angle between the segments) is miter length over width (SVG 2, 13.5.4).
+        const double half_angle_sine = std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
+        if (style_.join == LineJoin::miter && half_angle_sine * style_.miter_limit >= 1.0) {
+            outline_.emplace_back(vertex + (from + to) / (1.0 + cosine));
+            return;
+        }
+        outline_.emplace_back(vertex + from);
+        if (style_.join == LineJoin::round) {
             append_arc(outline_, vertex, from, std::atan2(sine, cosine), style_.arc_tolerance);
-        } else if (style_.join == LineJoin::miter) {
-            // 1 / sin(half the angle between the segments) is miter length over width (SVG 2, 13.5.4).
-            const double half_angle_sine = std::sqrt(std::max(0.0, 0.5 * (1.0 + cosine)));
-            if (half_angle_sine * style_.miter_limit >= 1.0) {
-                outline_.emplace_back(vertex + (from + to) / (1.0 + cosine));
-            }
         }
         outline_.emplace_back(vertex + to);
     }
@@ -253,6 +255,15 @@ Region stroke(const Polyline& line, bool closed, const StrokeStyle& style) {
         for (int i = count - 2; i > 0; --i) pen.join(points[i], -direction[i], -direction[i - 1]);
         pen.cap(points.front(), -direction[0]);
         loops.push_back(pen.take());
+    }
+    return region_from_loops(loops, FillRule::nonzero);
+}
+
+Region simplify(const Region& region, double tolerance) {
+    std::vector<Polyline> loops;
+    for (const Polygon& polygon : region) {
+        loops.push_back(simplify(polygon.outer, true, tolerance));
+        for (const Polyline& hole : polygon.holes) loops.push_back(simplify(hole, true, tolerance));
     }
     return region_from_loops(loops, FillRule::nonzero);
 }

@@ -43,6 +43,9 @@ Region offset(const Region& region, double distance, double arc_tolerance = 0.01
 /// style's arc tolerance.
 Region stroke(const Polyline& line, bool closed, const StrokeStyle& style);
 
+/// Leaves out points within `tolerance` of the remaining borders (see `simplify` of a line).
+Region simplify(const Region& region, double tolerance);
+
 double area(const Region& region);
 
 /// Whether the point lies inside (even-odd); on a border either answer is possible.

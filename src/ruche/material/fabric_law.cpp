@@ -1,5 +1,6 @@
 #include "ruche/material/fabric_law.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace ruche {

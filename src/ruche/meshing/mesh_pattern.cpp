@@ -82,9 +82,8 @@ SegmentGraph divide(const BorderGraph& graph, const SizeField& sizes, std::vecto
     return result;
 }
 
-Triangulation refined(const Pattern& pattern, const MeshOptions& options, const SegmentGraph& graph,
-                      const SizeField& sizes) {
-    const double expected = sizes.expected_triangles(pattern.fabric);
+Triangulation refined(const MeshOptions& options, const SegmentGraph& graph, const SizeField& sizes,
+                      double expected) {
     if (expected > most_triangles) {
         const double enough = options.size_mm * std::sqrt(expected / most_triangles);
         throw InputError({.key = "mesh.size_mm"},
@@ -186,6 +185,20 @@ void check_manifold(const TriangleMesh& mesh) {
     }
 }
 
+void warn_about_size(PrintMesh& result, double expected) {
+    constexpr double worth_a_word = 5.0;
+    if (result.mesh.triangle_count() < worth_a_word * (expected + 100.0)) return;
+    int smallest = 0;
+    for (int t = 1; t < result.mesh.triangle_count(); ++t) {
+        if (layout_area(result.mesh, t) < layout_area(result.mesh, smallest)) smallest = t;
+    }
+    const Vec2& at = result.mesh.vertices[result.mesh.triangles[smallest][0]];
+    result.warnings.push_back(
+        fmt::format("the mesh has {} triangles where about {:.0f} would do, because borders "
+                    "are very close to each other, for example near x = {:.4g}, y = {:.4g} mm",
+                    result.mesh.triangle_count(), expected, at.x(), at.y()));
+}
+
 std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions& options,
                                        const TriangleMesh& mesh, const std::vector<Cover>& covers) {
     const PointLocator locator(mesh);
@@ -223,7 +236,8 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     const SizeField sizes = size_field(pattern, options);
     std::vector<int> origin;
     const SegmentGraph segments = divide(graph, sizes, origin);
-    const Triangulation triangulation = refined(pattern, options, segments, sizes);
+    const double expected = sizes.expected_triangles(pattern.fabric);
+    const Triangulation triangulation = refined(options, segments, sizes, expected);
     if (triangulation.mesh.triangles.empty()) throw InputError({}, "the fabric's outline encloses no area");
 
     const std::vector<std::vector<int>> covered = regions_of_pieces(triangulation, graph, origin);
@@ -236,6 +250,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     set_print(result, covers, pattern.strips);
     result.strips = meshed_strips(pattern, options, result.mesh, covers);
     result.warnings = pattern.warnings;
+    warn_about_size(result, expected);
     const int pieces = find_pieces(result.mesh).count;
     if (pieces > 1) {
         result.warnings.push_back(

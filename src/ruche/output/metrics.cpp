@@ -56,24 +56,39 @@ Vec2 direction(Samples line, std::size_t i) {
     return (line[after].layout - line[before].layout).normalized();
 }
 
-/// Cuts a line where its direction in the layout has turned by `most_turn` since the piece began. A rest too
-/// short to fit a circle to stays with the piece before it.
-std::vector<Samples> nearly_straight_pieces(Samples line) {
-    std::vector<Samples> pieces;
-    std::size_t begin = 0;
-    double turned = 0.0;
+/// Turning of the layout's line at each sample, radians; 0 at both ends.
+std::vector<double> turns_of(Samples line) {
+    std::vector<double> turns(line.size(), 0.0);
     for (std::size_t i = 1; i + 1 < line.size(); ++i) {
         const Vec2 in = line[i].layout - line[i - 1].layout;
         const Vec2 out = line[i + 1].layout - line[i].layout;
-        turned += std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
-        if (std::abs(turned) <= most_turn) continue;
-        if (i - begin + 1 >= fewest_points && line.size() - i >= fewest_points) {
-            pieces.push_back(line.subspan(begin, i - begin + 1));
-            begin = i;
-            turned = 0.0;
-        }
+        turns[i] = std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out));
     }
-    pieces.push_back(line.subspan(begin));
+    return turns;
+}
+
+/// Cuts a line where its direction in the layout has turned by `most_turn` since the piece began. A step
+/// that turns as much by itself cuts a corner of the drawing: it belongs to no piece. Pieces too short to fit
+/// a circle to are left out, unless there is nothing else.
+std::vector<Samples> nearly_straight_pieces(Samples line) {
+    const std::vector<double> turns = turns_of(line);
+    std::vector<Samples> pieces;
+    std::size_t begin = 0;
+    double turned = 0.0;
+    const auto end_piece = [&](std::size_t last, std::size_t next) {
+        if (last + 1 >= begin + fewest_points) pieces.push_back(line.subspan(begin, last + 1 - begin));
+        begin = next;
+        turned = 0.0;
+    };
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        if (i > begin) turned += turns[i];
+        if (std::abs(turns[i] + turns[i + 1]) > most_turn)
+            end_piece(i, i + 1);
+        else if (std::abs(turned) > most_turn)
+            end_piece(i, i);
+    }
+    end_piece(line.size() - 1, line.size());
+    if (pieces.empty()) pieces.push_back(line);
     return pieces;
 }
 

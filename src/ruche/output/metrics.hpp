@@ -26,9 +26,9 @@ struct StripMetrics {
 /// A circle is fitted to the released centre line. The line's points lie inside flat triangles, below the
 /// smooth shape whose points the vertices are: by sum_i w_i |x_i - p|^2 in the circle's plane for a point p =
 /// sum_i w_i x_i (exact for vertices on a cylinder: Lagrange's identity); the fit puts them back.
-/// A strip that is curved in the layout is measured in pieces that turn by at most 30 degrees there; in each
-/// only the part normal to the sheet counts (Meusnier's theorem). Pieces, and the lines of a
-/// strip with several, are averaged by printed length.
+/// A strip that is curved in the layout is measured in pieces that turn by at most 30 degrees there, corners
+/// left out; in each only the part normal to the sheet counts (Meusnier's theorem). Pieces, and the lines of
+/// a strip with several, are averaged by printed length.
 /// Stretch is that of the triangles (what the membrane energy measures), averaged along the line.
 std::vector<StripMetrics> measure_strips(const PrintMesh& layout, std::span<const Vec3> shape);
 

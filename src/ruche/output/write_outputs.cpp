@@ -13,14 +13,17 @@
 #include "ruche/output/exporters.hpp"
 #include "ruche/output/picture.hpp"
 #include "ruche/output/report.hpp"
+#include "ruche/scene/state.hpp"
+#include "ruche/scene/write_scene.hpp"
 
 namespace ruche {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array all_names = {"shape.obj",  "shape.mtl",  "shape.ply", "shape.vtu",   "layout.obj",
-                                  "layout.ply", "layout.vtu", "shape.glb", "picture.png", "report.json"};
+constexpr std::array all_names = {"shape.obj",  "shape.mtl",   "shape.ply",   "shape.vtu",
+                                  "layout.obj", "layout.ply",  "layout.vtu",  "shape.glb",
+                                  "scene.toml", "state.ruche", "picture.png", "report.json"};
 
 /// A file to write: its name, and how its contents are made when its turn comes.
 struct Output {
@@ -29,7 +32,8 @@ struct Output {
 };
 
 /// In the order in which they take their places.
-std::vector<Output> outputs(const Result& result, const ExportSurface& shape, const ExportSurface& layout) {
+std::vector<Output> outputs(const Result& result, const std::string& folder, const ExportSurface& shape,
+                            const ExportSurface& layout) {
     const OutputOptions& wanted = result.scene.output;
     std::vector<Output> list;
     if (wanted.obj) {
@@ -51,6 +55,8 @@ std::vector<Output> outputs(const Result& result, const ExportSurface& shape, co
                             return to_png(draw_picture(result, {.width_px = wanted.picture_width_px,
                                                                 .height_px = wanted.picture_height_px}));
                         }});
+    list.push_back({"scene.toml", [&] { return to_toml(result.scene, folder); }});
+    list.push_back({"state.ruche", [&] { return to_bytes(state_of(result)); }});
     list.push_back({"report.json", [&] { return report_json(result); }});
     return list;
 }
@@ -83,7 +89,8 @@ std::vector<std::string> write_outputs(const Result& result, const std::string& 
     make_folder(folder);
     const SurfaceFields fields = surface_fields(result, energy_density);
     const ExportSurface shape = released_surface(result, fields), layout = layout_surface(result, fields);
-    const std::vector<Output> list = outputs(result, shape, layout);
+    const std::string name = folder.string();
+    const std::vector<Output> list = outputs(result, name, shape, layout);
     std::vector<PendingFile> files;
     for (const Output& output : list) {
         control.say({.phase = "write",

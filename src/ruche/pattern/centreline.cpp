@@ -11,68 +11,98 @@ namespace ruche {
 
 namespace {
 
-constexpr int samples = 128;        // around a border
-constexpr int steps = samples / 2;  // across from end to end
+constexpr int coarse = 128;        // points around a border while looking for its ends
+constexpr int finest = 2048;       // at most so many for the line itself
+constexpr double rounding = 1e-9;  // mm: shorter pieces between crossings are none
 constexpr double far_away = std::numeric_limits<double>::infinity();
 
-/// A border by 128 evenly spaced points, seen as two sides between two ends.
+/// A border by evenly spaced points, seen as two sides between two of them, the ends.
 struct Sides {
     const Polyline& border;
     int start;
     int end;
 
+    int count() const { return static_cast<int>(border.size()); }
+    int steps() const { return count() / 2; }
+    int forward() const { return (end - start + count()) % count(); }
+
     Vec2 at(double place) const {
-        const double wrapped = place - samples * std::floor(place / samples);
-        const int i = static_cast<int>(wrapped) % samples;
+        const double wrapped = place - count() * std::floor(place / count());
+        const int i = static_cast<int>(wrapped) % count();
         const double t = wrapped - std::floor(wrapped);
-        return (1.0 - t) * border[i] + t * border[(i + 1) % samples];
+        return (1.0 - t) * border[i] + t * border[(i + 1) % count()];
     }
-    int forward() const { return (end - start + samples) % samples; }
     Vec2 one(double t) const { return at(start + t * forward()); }
-    Vec2 other(double t) const { return at(start - t * (samples - forward())); }
+    Vec2 other(double t) const { return at(start - t * (count() - forward())); }
 
     // The mean distance between the sides; long sides paired well are close to each other.
     double mean_gap() const {
         double sum = 0.0;
-        for (int k = 1; k < steps; ++k) {
-            const double t = static_cast<double>(k) / steps;
+        for (int k = 1; k < steps(); ++k) {
+            const double t = static_cast<double>(k) / steps();
             sum += (one(t) - other(t)).norm();
         }
-        return sum / (steps - 1);
+        return sum / (steps() - 1);
     }
 };
 
-// The two ends that make the sides closest to each other: first opposite ends, then each end in turn.
-Sides best_sides(const Polyline& border) {
-    Sides best{border, 0, samples / 2};
-    double smallest = far_away;
-    const auto consider = [&](int start, int end) {
-        const Sides sides{border, start, end};
-        if (sides.forward() < samples / 4 || sides.forward() > samples - samples / 4) return;
+/// Moves the ends to where the sides are closest to each other.
+class EndSearch {
+  public:
+    explicit EndSearch(const Sides& first) : best_(first), smallest_(first.mean_gap()) {}
+
+    void consider(int start, int end) {
+        const int count = best_.count();
+        const Sides sides{best_.border, (start + count) % count, (end + count) % count};
+        if (sides.forward() < count / 4 || sides.forward() > count - count / 4) return;
         const double gap = sides.mean_gap();
-        if (gap < smallest * (1.0 - 1e-9)) {
-            smallest = gap;
-            best.start = start;
-            best.end = end;
-        }
-    };
-    for (int i = 0; i < samples / 2; ++i) consider(i, i + samples / 2);
-    for (int round = 0; round < 2; ++round) {
-        const int start = best.start;
-        for (int i = 0; i < samples; ++i) consider(start, i);
-        const int end = best.end;
-        for (int i = 0; i < samples; ++i) consider(i, end);
+        if (gap >= smallest_ * (1.0 - 1e-9)) return;
+        smallest_ = gap;
+        best_.start = sides.start;
+        best_.end = sides.end;
     }
-    return best;
-}
+
+    // Each end in turn, up to `reach` points away from where it is.
+    void move_ends(int reach) {
+        for (int round = 0; round < 2; ++round) {
+            const int start = best_.start;
+            const int end = best_.end;
+            for (int i = -reach; i < reach; ++i) consider(start, end + i);
+            const int moved = best_.end;
+            for (int i = -reach; i < reach; ++i) consider(start + i, moved);
+        }
+    }
+
+    int start() const { return best_.start; }
+    int end() const { return best_.end; }
+    const Sides& best() const { return best_; }
+
+  private:
+    Sides best_;
+    double smallest_;
+};
 
 Polyline between(const Sides& sides) {
     Polyline line;
-    for (int k = 0; k <= steps; ++k) {
-        const double t = static_cast<double>(k) / steps;
+    for (int k = 0; k <= sides.steps(); ++k) {
+        const double t = static_cast<double>(k) / sides.steps();
         line.emplace_back(0.5 * (sides.one(t) + sides.other(t)));
     }
     return line;
+}
+
+// How many points at an end of the line lie in the strip's cap, where its sides do not face each other yet:
+// within half a width, and on up to a width while the sides still diverge.
+int points_in_cap(const Sides& sides, const Polyline& line, double width, bool from_end) {
+    int k = 0;
+    for (; k < sides.steps() / 4; ++k) {
+        const double t = static_cast<double>(from_end ? sides.steps() - k : k) / sides.steps();
+        const Vec2& here = from_end ? line[line.size() - 1 - k] : line[k];
+        const double distance = (here - (from_end ? line.back() : line.front())).norm();
+        if (distance > width) break;
+        if (distance > 0.5 * width && (sides.one(t) - sides.other(t)).norm() > 0.98 * width) break;
+    }
+    return k;
 }
 
 Vec2 nearest_on(const Polyline& loop, const Vec2& p) {
@@ -101,7 +131,7 @@ bool is_ring(const Polygon& polygon) {
 
 Polyline ring_midline(const Polygon& ring) {
     Polyline line;
-    for (const Vec2& p : resample(ring.holes[0], true, samples)) {
+    for (const Vec2& p : resample(ring.holes[0], true, coarse)) {
         line.emplace_back(0.5 * (p + nearest_on(ring.outer, p)));
     }
     line.push_back(line.front());
@@ -126,7 +156,7 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
             if (turn == 0.0) continue;
             const double t = cross(c - a, d - c) / turn;
             const double s = cross(c - a, along) / turn;
-            if (t > 0.0 && t < 1.0 && s >= 0.0 && s <= 1.0) at.push_back(t);
+            if (t > 0.0 && t < 1.0 && s >= -rounding && s <= 1.0 + rounding) at.push_back(t);
         }
     };
     for (const Polygon& polygon : region) {
@@ -137,13 +167,64 @@ std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region
     return at;
 }
 
+constexpr std::size_t few = 3;  // points: directions are taken over so many, single steps are noisy
+
+// Moves every point to the middle of the cross-section through it, where the border is near on both sides.
+Polyline recentred(const Polyline& line, const Polygon& strip, double width) {
+    Polyline result = line;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const Vec2 along = line[std::min(i + few, line.size() - 1)] - line[i < few ? 0 : i - few];
+        if (along.norm() < rounding || !contains({strip}, line[i])) continue;
+        const Vec2 across = Vec2(-along.y(), along.x()).normalized() * (1.5 * width);
+        const double left = crossings(line[i], line[i] + across, {strip})[1];
+        const double right = crossings(line[i], line[i] - across, {strip})[1];
+        if (left < 1.0 && right < 1.0) result[i] += 0.5 * (left - right) * across;
+    }
+    return result;
+}
+
+// The line with its ends inside the strip's caps, where the sides do not face each other, replaced by
+// straight ones up to the border.
+Polyline with_straight_ends(const Sides& sides, const Polygon& strip) {
+    const Polyline line = between(sides);
+    const double width = strip_width(strip);
+    const int first = points_in_cap(sides, line, width, false);
+    const int last = static_cast<int>(line.size()) - points_in_cap(sides, line, width, true);
+    Polyline inner(line.begin() + first, line.begin() + last);
+    const auto extended = [&](const Vec2& end, const Vec2& before) -> Vec2 {
+        const Vec2 ahead = (end - before).normalized() * (2.0 * width);
+        const double reach = crossings(end, end + ahead, {strip})[1];
+        return reach < 1.0 ? Vec2(end + reach * ahead) : end;
+    };
+    if (inner.size() <= few) return line;
+    for (int round = 0; round < 2; ++round) inner = recentred(inner, strip, width);
+    const Vec2 start = extended(inner.front(), inner[few]);
+    const Vec2 end = extended(inner.back(), inner[inner.size() - 1 - few]);
+    inner.insert(inner.begin(), start);
+    inner.push_back(end);
+    return inner;
+}
+
+// First on few points over all pairs of opposite ends, then on points a quarter of the width apart.
+Polyline strip_midline(const Polygon& strip) {
+    const Polyline rough = resample(strip.outer, true, coarse);
+    EndSearch search({rough, 0, coarse / 2});
+    for (int i = 1; i < coarse / 2; ++i) search.consider(i, i + coarse / 2);
+    search.move_ends(coarse / 2);
+    const double wanted = length(strip.outer, true) / (0.25 * strip_width(strip));
+    const int finer = static_cast<int>(std::clamp(std::ceil(wanted / coarse), 1.0, 1.0 * finest / coarse));
+    const Polyline fine = resample(strip.outer, true, finer * coarse);
+    EndSearch refined({fine, finer * search.start(), finer * search.end()});
+    refined.move_ends(finer);
+    return with_straight_ends(refined.best(), strip);
+}
+
 }  // namespace
 
 Polyline midline(const Polygon& polygon) {
     if (polygon.outer.size() < 3) return {};
     if (polygon.holes.size() == 1 && is_ring(polygon)) return ring_midline(polygon);
-    const Polyline border = resample(polygon.outer, true, samples);
-    return between(best_sides(border));
+    return strip_midline({polygon.outer, {}});
 }
 
 std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Region& region,
@@ -163,7 +244,7 @@ std::vector<Polyline> cut_to_region(const std::vector<Polyline>& lines, const Re
             const std::vector<double> at = crossings(a, b, region);
             for (std::size_t k = 1; k < at.size(); ++k) {
                 const double middle = 0.5 * (at[k - 1] + at[k]);
-                if (at[k] <= at[k - 1]) continue;
+                if ((at[k] - at[k - 1]) * (b - a).norm() < rounding) continue;
                 if (!contains(region, a + middle * (b - a))) {
                     finish();
                     continue;

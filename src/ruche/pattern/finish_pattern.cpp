@@ -51,9 +51,13 @@ Region fabric_around(const std::vector<Strip>& strips, double margin) {
     }
     const Region print = all_of(strips);
     if (margin == 0.0) return print;
-    Region fabric = offset(print, margin, fabric_arc_tolerance);
+    // A little farther and back: closes bays that narrow so much that their shores would touch.
+    const double closing = 0.2 * margin;
+    Region fabric = offset(simplify(print, largest_shift), margin + closing, fabric_arc_tolerance);
     for (Polygon& piece : fabric) piece.holes.clear();
-    return unite({&fabric, 1});
+    fabric = offset(unite({&fabric, 1}), -closing, fabric_arc_tolerance);
+    for (Polygon& piece : fabric) piece.holes.clear();
+    return fabric;
 }
 
 /// Makes the strips of one side disjoint: the thickest keep their place, then the earlier ones.
@@ -169,9 +173,9 @@ double printed_area(const Pattern& pattern) {
     return sum;
 }
 
-void clean_borders(Pattern& pattern) {
+void clean_borders(Pattern& pattern, double fabric_tolerance) {
     std::vector<Region> regions = {pattern.fabric};
-    std::vector<double> tolerance = {largest_shift};
+    std::vector<double> tolerance = {fabric_tolerance};
     for (const Strip& strip : pattern.strips) {
         regions.push_back(strip.region);
         double width = largest_shift / shift_per_width;
@@ -180,7 +184,8 @@ void clean_borders(Pattern& pattern) {
     }
     const double before = printed_area(pattern);
     BorderGraph graph = border_graph(regions, snap_mm);
-    pattern.border_shift = simplify_borders(graph, tolerance, snap_mm);
+    const std::vector<double> shift = simplify_borders(graph, tolerance, snap_mm);
+    pattern.border_shift = shift.size() > 1 ? *std::max_element(shift.begin() + 1, shift.end()) : 0.0;
     pattern.fabric = region_of(graph, 0);
     for (std::size_t i = 0; i < pattern.strips.size(); ++i) {
         pattern.strips[i].region = region_of(graph, static_cast<int>(i) + 1);
@@ -219,7 +224,9 @@ Pattern finish_pattern(Pattern pattern, double margin, bool bare) {
     unite_overlaps(pattern);
     if (outline_given) cut_at_fabric(pattern);
     if (!bare) check_not_empty(pattern, "all strips lie outside the fabric");
-    clean_borders(pattern);
+    // An outline that nobody drew needs not be followed closely.
+    clean_borders(pattern, outline_given ? largest_shift
+                                         : std::clamp(0.02 * margin, largest_shift, fabric_arc_tolerance));
     for (Strip& strip : pattern.strips) strip.centreline = cut_to_region(strip.centreline, strip.region);
     return pattern;
 }

@@ -30,7 +30,7 @@ struct Pattern {
     Region fabric;
     std::vector<Strip> strips;
     std::vector<std::string> warnings;
-    double border_shift = 0.0;  ///< largest distance by which simplifying moved a border, mm
+    double border_shift = 0.0;  ///< largest distance by which simplifying moved a printed border, mm
     double area_change = 0.0;   ///< printed area after simplifying over printed area before, minus 1
 };
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double arc_tolerance = 0.002;
 // A strip of exactly the narrowest width passes in spite of rounding and chords.
-constexpr double inset = 0.5 * narrowest_feature_mm - 5e-4;
+constexpr double inset = 0.5 * narrowest_feature_mm - 2.0 * arc_tolerance;
 constexpr double longest_tip = 1.0;
 
 [[noreturn]] void too_narrow(const Place& place, const std::string& what) {
@@ -39,13 +39,14 @@ void check_strip(const Strip& strip, const Place& place) {
                          "A modulus is a positive number of MPa; 0 takes the material card's.");
     }
     if (strip.region.empty()) too_narrow(place, "covers no area: nothing would be printed");
-    const Region core = offset(strip.region, -inset, arc_tolerance);
+    const Region region = simplify(strip.region, arc_tolerance);  // many points make offsets slow
+    const Region core = offset(region, -inset, arc_tolerance);
     if (core.empty()) {
         too_narrow(place, fmt::format("is {:.3g} mm wide", strip_width(strip.region.front())));
     }
     // What the printer's pen of that width can reach; its round tip leaves out corners.
     const Region reachable = offset(core, inset + 4.0 * arc_tolerance, arc_tolerance);
-    for (const Polygon& rest : subtract(strip.region, reachable)) {
+    for (const Polygon& rest : subtract(region, reachable)) {
         const double extent = 0.5 * length(rest.outer, true);
         if (extent > longest_tip) {
             const Vec2& at = rest.outer.front();

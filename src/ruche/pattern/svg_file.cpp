@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t most_warnings = 100;
 constexpr std::uintmax_t largest_file = std::uintmax_t{256} << 20U;
 constexpr int most_attributes = 1000;
-constexpr std::size_t most_effort = 20'000'000;
+constexpr std::size_t most_effort = 8'000'000;
 constexpr std::size_t longest_style = 65536;  // with entities replaced
 
 std::string read_bytes(const std::string& path) {

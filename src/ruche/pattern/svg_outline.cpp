@@ -12,6 +12,7 @@ constexpr double pi = std::numbers::pi;
 constexpr double same_point = 1e-7;
 constexpr int deepest_split = 14;
 constexpr int most_arc_chords = 20000;
+constexpr double slender = 3.0;
 
 /// The angle that a chord of a circle of this radius may span.
 double chord_angle(double tolerance, double radius) {
@@ -37,6 +38,9 @@ struct Cubic {
         // A curve lies in the hull of its control points, a segment's surroundings are convex.
         return distance_to_chord(b, a, d) <= tolerance && distance_to_chord(c, a, d) <= tolerance;
     }
+    bool within(double distance) const {
+        return (b - a).norm() <= distance && (c - a).norm() <= distance && (d - a).norm() <= distance;
+    }
     double turning() const {
         const Vec2 legs[] = {b - a, c - b, d - c};
         double total = 0.0;
@@ -59,51 +63,66 @@ class Flattener {
     Flattener(const Affine& map, const Flattening& how)
         : map_(map), how_(how), pen_angle_(chord_angle(how.tolerance, how.pen_radius)) {}
 
-    Polyline run(const Subpath& subpath) {
+    FlatLine run(const Subpath& subpath) {
         const Vec2 start = map_ * subpath.start;
-        append(line_, start);
+        append(line_.points, start);
         last_ = start;
         for (const Segment& segment : subpath.segments) {
             std::visit([this](const auto& part) { add(part); }, segment);
         }
+        Polyline& points = line_.points;
         if (subpath.closed) {
-            while (line_.size() > 1 && (line_.back() - line_.front()).norm() <= same_point) line_.pop_back();
+            while (points.size() > 1 && (points.back() - points.front()).norm() <= same_point)
+                points.pop_back();
         }
         return std::move(line_);
     }
 
   private:
-    void add(const LineTo& part) {
-        last_ = map_ * part.end;
-        append(line_, last_);
-    }
+    void add(const LineTo& part) { to(map_ * part.end); }
     void add(const CubicTo& part) {
-        const Cubic cubic{last_, map_ * part.control_1, map_ * part.control_2, map_ * part.end};
-        split(cubic, 0);
-        last_ = cubic.d;
+        split({last_, map_ * part.control_1, map_ * part.control_2, map_ * part.end}, 0);
+        last_ = map_ * part.end;
     }
     void add(const ArcTo& part) {
         const Vec2 centre = map_ * part.centre;
-        const Vec2 u = map_.linear * part.u;
-        const Vec2 v = map_.linear * part.v;
         Mat2 axes;
-        axes << u, v;
-        const double step = chord_angle(how_.tolerance, stretches(axes).largest + how_.pen_radius);
-        const double chords = std::ceil(std::abs(part.sweep) / step - 1e-9);
-        const int count = std::max(1, static_cast<int>(std::min<double>(chords, most_arc_chords)));
+        axes << map_.linear * part.u, map_.linear * part.v;
+        const Stretches radii = stretches(axes);
+        if (radii.largest > slender * radii.smallest) {
+            slender_arc(part, centre, axes);
+            return;
+        }
+        const double step = chord_angle(how_.tolerance, radii.largest + how_.pen_radius);
+        const int count = pieces(part.sweep, step);
         for (int i = 1; i < count; ++i) {
             const double angle = part.start + part.sweep * i / count;
-            append(line_, centre + u * std::cos(angle) + v * std::sin(angle));
+            append(line_.points, centre + axes * Vec2(std::cos(angle), std::sin(angle)));
         }
-        last_ = map_ * part.end;
-        append(line_, last_);
+        to(map_ * part.end);
+    }
+    /// An ellipse that is nearly flat turns sharply at its tips: as curves, which are split by turning. A
+    /// cubic misses pi/8 of a circle by less than 1e-7 of the radius.
+    void slender_arc(const ArcTo& part, const Vec2& centre, const Mat2& axes) {
+        const int count = pieces(part.sweep, pi / 8.0);
+        const double step = part.sweep / count, reach = 4.0 / 3.0 * std::tan(step / 4.0);
+        for (int i = 0; i < count; ++i) {
+            const double from = part.start + step * i, to = from + step;
+            const Vec2 a(std::cos(from), std::sin(from)), d(std::cos(to), std::sin(to));
+            const Vec2 b = a + reach * Vec2(-a.y(), a.x()), c = d - reach * Vec2(-d.y(), d.x());
+            const Vec2 end = i + 1 == count ? Vec2(map_ * part.end) : Vec2(centre + axes * d);
+            split({last_, centre + axes * b, centre + axes * c, end}, 0);
+            last_ = end;
+        }
     }
     void split(const Cubic& cubic, int depth) {
         // The pen's edge turns about the curve's points: it needs chords that turn by little.
-        if (depth == deepest_split || (cubic.flat(how_.tolerance) && cubic.turning() <= pen_angle_)) {
-            append(line_, cubic.d);
-            return;
-        }
+        const bool fine = cubic.flat(how_.tolerance) && cubic.turning() <= pen_angle_;
+        const bool tight = !fine && (depth == deepest_split || cubic.within(how_.tolerance));
+        if (tight) line_.tight_turns.push_back(line_.points.back());
+        if (fine || tight) append(line_.points, cubic.d);
+        if (tight) line_.tight_turns.push_back(line_.points.back());
+        if (fine || tight) return;
         const Vec2 ab = (cubic.a + cubic.b) / 2.0, bc = (cubic.b + cubic.c) / 2.0,
                    cd = (cubic.c + cubic.d) / 2.0;
         const Vec2 abc = (ab + bc) / 2.0, bcd = (bc + cd) / 2.0;
@@ -111,11 +130,19 @@ class Flattener {
         split({cubic.a, ab, abc, middle}, depth + 1);
         split({middle, bcd, cd, cubic.d}, depth + 1);
     }
+    void to(const Vec2& point) {
+        append(line_.points, point);
+        last_ = point;
+    }
+    static int pieces(double sweep, double step) {
+        const double count = std::ceil(std::abs(sweep) / step - 1e-9);
+        return std::max(1, static_cast<int>(std::min<double>(count, most_arc_chords)));
+    }
 
     Affine map_;
     Flattening how_;
     double pen_angle_;
-    Polyline line_;
+    FlatLine line_;
     Vec2 last_ = Vec2::Zero();
 };
 
@@ -192,7 +219,7 @@ Outline polygon_outline(const std::vector<Vec2>& points, bool closed) {
     return {subpath};
 }
 
-Polyline flatten(const Subpath& subpath, const Affine& map, const Flattening& how) {
+FlatLine flatten(const Subpath& subpath, const Affine& map, const Flattening& how) {
     return Flattener(map, how).run(subpath);
 }
 

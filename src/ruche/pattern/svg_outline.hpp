@@ -56,8 +56,15 @@ struct Flattening {
         0.0;  ///< half the stroke width, after the map: the stroke's edge keeps the tolerance too
 };
 
-/// The mapped subpath as a chain of points; consecutive ones differ by more than 1e-7, and a closed one does
-/// not repeat its first point. One point alone means that it has no length.
-Polyline flatten(const Subpath& subpath, const Affine& map, const Flattening& how);
+/// A chain of points; consecutive ones differ by more than 1e-7, and a closed one does not repeat its first
+/// point. One point alone means that the subpath has no length.
+struct FlatLine {
+    Polyline points;
+    /// Those of the points where a smooth curve turns sharply within the tolerance: a pen rounds them
+    /// whatever its joins are.
+    std::vector<Vec2> tight_turns;
+};
+
+FlatLine flatten(const Subpath& subpath, const Affine& map, const Flattening& how);
 
 }  // namespace ruche::svg

@@ -11,6 +11,14 @@ namespace ruche::svg {
 static bool is_digit(char c) { return c >= '0' && c <= '9'; }
 static bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
+/// Of a number that is out of a double's range: whether it is too small rather than too large.
+static bool underflows(std::string_view number) {
+    const std::size_t exponent = number.find_first_of("eE");
+    const std::size_t point = std::min(number.find('.'), std::min(exponent, number.size()));
+    const bool shrinks = exponent != std::string_view::npos && number[exponent + 1] == '-';
+    return point < 300 && (shrinks || (exponent == std::string_view::npos && point < number.size()));
+}
+
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f'; }
 
 std::string_view trimmed(std::string_view text) {
@@ -62,12 +70,11 @@ std::optional<double> Scanner::number() {
         }
     }
     // from_chars knows no plus sign.
-    const std::size_t first = text_[position_] == '+' ? position_ + 1 : position_;
+    const std::string_view digits =
+        text_.substr(position_, i - position_).substr(text_[position_] == '+' ? 1 : 0);
     double value = 0.0;
-    const auto result = std::from_chars(text_.data() + first, text_.data() + i, value);
-    // Out of range: either hopelessly large (an error) or so small that it is zero.
-    if (result.ec != std::errc() && !(std::abs(value) < 1.0)) return std::nullopt;
-    if (!std::isfinite(value)) return std::nullopt;
+    const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (result.ec != std::errc() && !underflows(digits)) return std::nullopt;
     position_ = i;
     return value;
 }

@@ -5,7 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
@@ -18,7 +18,33 @@ namespace ruche::svg {
 namespace {
 
 constexpr std::size_t most_points = 1'000'000;
-constexpr std::size_t most_crossings = 2'000'000;
+// Pairs of segments whose boxes overlap: of the lines themselves, and of what a pen covers.
+struct Pairs {
+    std::size_t lines = 0, pen = 0;
+};
+constexpr Pairs most_in_shape{200'000, 1'000'000};
+constexpr Pairs most_in_drawing{1'000'000, 3'000'000};
+constexpr std::size_t most_comparisons = 100'000'000;
+
+struct Box {
+    double left, right, low, high;
+};
+
+std::vector<Box> segment_boxes(const Lines& lines) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < lines.points.size(); ++i) {
+        const Polyline& line = lines.points[i];
+        const std::size_t count = line.size();
+        for (std::size_t k = lines.closed[i] ? 0 : 1; k < count; ++k) {
+            const Vec2& a = line[(k + count - 1) % count];
+            const Vec2& b = line[k];
+            boxes.push_back({std::min(a.x(), b.x()), std::max(a.x(), b.x()), std::min(a.y(), b.y()),
+                             std::max(a.y(), b.y())});
+        }
+    }
+    std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.left < b.left; });
+    return boxes;
+}
 
 /// Bounds the work that a drawing may ask for. Boolean operations on n segments with k crossings cost about
 /// (n + k) log n, and k may be n^2: pairs of segments whose boxes overlap are counted beforehand.
@@ -26,7 +52,7 @@ class Budget {
   public:
     Budget(const SvgFile& file, double tolerance) : file_(file), tolerance_(tolerance) {}
 
-    void spend(const DrawnItem& item, const Lines& lines) {
+    void spend(const DrawnItem& item, const Lines& lines, double pen_radius) {
         for (const Polyline& line : lines.points) points_ += line.size();
         if (points_ > most_points) {
             throw InputError(file_.place(item.node),
@@ -34,45 +60,37 @@ class Budget {
                                          most_points, tolerance_),
                              "Simplify the drawing, or allow a larger tolerance.");
         }
-        count_crossings(lines);
-        if (crossings_ > most_crossings) {
+        const std::vector<Box> boxes = segment_boxes(lines);
+        const std::size_t crossings = overlaps(boxes, 0.0, most_in_shape.lines);
+        const std::size_t touches =
+            pen_radius > 0.0 ? overlaps(boxes, 2.0 * pen_radius, most_in_shape.pen) : 0;
+        total_.lines += crossings;
+        total_.pen += touches;
+        if (crossings > most_in_shape.lines || touches > most_in_shape.pen ||
+            total_.lines > most_in_drawing.lines || total_.pen > most_in_drawing.pen) {
             throw InputError(file_.place(item.node), "the lines cross each other too often to be printed",
                              "Simplify this shape.");
         }
     }
 
   private:
-    struct Box {
-        double left, right, low, high;
-    };
-
-    void count_crossings(const Lines& lines) {
-        std::vector<Box> boxes;
-        for (std::size_t i = 0; i < lines.points.size(); ++i) {
-            const Polyline& line = lines.points[i];
-            const std::size_t count = line.size();
-            for (std::size_t k = lines.closed[i] ? 0 : 1; k < count; ++k) {
-                const Vec2& a = line[(k + count - 1) % count];
-                const Vec2& b = line[k];
-                boxes.push_back({std::min(a.x(), b.x()), std::max(a.x(), b.x()), std::min(a.y(), b.y()),
-                                 std::max(a.y(), b.y())});
+    /// Pairs that come closer than `gap`; anything above `limit` when there are more.
+    static std::size_t overlaps(const std::vector<Box>& boxes, double gap, std::size_t limit) {
+        std::size_t count = 0, compared = 0;
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            for (std::size_t j = i + 1; j < boxes.size() && boxes[j].left < boxes[i].right + gap; ++j) {
+                if (boxes[j].low < boxes[i].high + gap && boxes[i].low < boxes[j].high + gap) ++count;
+                // Long lines side by side do not cross, but so many of them are too many, too.
+                if (count > limit || ++compared > most_comparisons) return limit + 1;
             }
         }
-        std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.left < b.left; });
-        std::size_t looked_at = 0;
-        for (std::size_t i = 0; i < boxes.size() && crossings_ <= most_crossings; ++i) {
-            for (std::size_t j = i + 1; j < boxes.size() && boxes[j].left < boxes[i].right; ++j) {
-                if (boxes[j].low < boxes[i].high && boxes[i].low < boxes[j].high) ++crossings_;
-                // Long lines side by side do not cross, but a hundred million such pairs are too many, too.
-                if (++looked_at > 50 * most_crossings) crossings_ = most_crossings + 1;
-                if (crossings_ > most_crossings) break;
-            }
-        }
+        return count;
     }
 
     const SvgFile& file_;
     double tolerance_;
-    std::size_t points_ = 0, crossings_ = 0;
+    std::size_t points_ = 0;
+    Pairs total_;
 };
 
 void check_coordinates(const SvgFile& file, const DrawnItem& item, const Vec2& point, double limit) {
@@ -116,24 +134,36 @@ class ShapeMaker {
     ShapeMaker(const SvgFile& file, const PageMap& page, double tolerance, Warnings& warnings)
         : file_(file), page_(page), tolerance_(tolerance), warnings_(warnings), budget_(file, tolerance) {}
 
-    void make(const DrawnItem& item, std::vector<Shape>& shapes) {
+    /// All in chords first, so that a drawing with too much detail is refused before the costly part.
+    std::vector<Shape> make(const std::vector<DrawnItem>& items) {
+        std::vector<Lines> lines;
+        for (const DrawnItem& item : items) {
+            lines.push_back(item.fill || item.stroke ? flattened(item) : Lines());
+        }
+        std::vector<Shape> shapes;
+        for (std::size_t i = 0; i < items.size(); ++i) {
+            if (std::optional<Shape> shape = make(items[i], lines[i])) shapes.push_back(std::move(*shape));
+        }
+        return shapes;
+    }
+
+  private:
+    std::optional<Shape> make(const DrawnItem& item, const Lines& lines) {
         if (!item.fill && !item.stroke) {
             warn(item, "has neither fill nor stroke: not printed");
-            return;
+            return std::nullopt;
         }
-        const Lines lines = flattened(item);
         Shape shape;
         if (item.fill) fill(item, lines, shape);
         if (item.stroke) stroke_lines(item, lines, shape);
         if (shape.filled.empty() && shape.stroked.empty()) {
             warn(item, "covers nothing: not printed");
-            return;
+            return std::nullopt;
         }
         describe(item, lines, shape);
-        shapes.push_back(std::move(shape));
+        return shape;
     }
 
-  private:
     void warn(const DrawnItem& item, const std::string& text) { warnings_.add(file_.place(item.node), text); }
 
     /// The linear map from the units of the pen to mm, and the pen's width after it.
@@ -151,11 +181,14 @@ class ShapeMaker {
         }
         Lines lines;
         for (const Subpath& subpath : *item.outline) {
-            lines.points.push_back(flatten(subpath, item.to_mm, how));
+            FlatLine flat = flatten(subpath, item.to_mm, how);
+            lines.points.push_back(std::move(flat.points));
+            lines.tight_turns.insert(lines.tight_turns.end(), flat.tight_turns.begin(),
+                                     flat.tight_turns.end());
             lines.closed.push_back(subpath.closed);
             for (const Vec2& point : lines.points.back()) check_coordinates(file_, item, point, largest_page);
         }
-        budget_.spend(item, lines);
+        budget_.spend(item, lines, how.pen_radius);
         return lines;
     }
 
@@ -258,10 +291,7 @@ void Extent::include(const Region& region) {
 
 std::vector<Shape> make_shapes(const SvgFile& file, const std::vector<DrawnItem>& items, const PageMap& page,
                                double tolerance_mm, Warnings& warnings) {
-    ShapeMaker maker(file, page, tolerance_mm, warnings);
-    std::vector<Shape> shapes;
-    for (const DrawnItem& item : items) maker.make(item, shapes);
-    return shapes;
+    return ShapeMaker(file, page, tolerance_mm, warnings).make(items);
 }
 
 }  // namespace ruche::svg

@@ -105,6 +105,50 @@ Region dot(const Vec2& centre, const Vec2& direction, StrokeStyle style) {
     return stroke({centre - half, centre + half}, false, style);
 }
 
+bool before(const Vec2& a, const Vec2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); }
+/// The points of a line that are among `turns` (sorted by `before`); not an open line's ends.
+std::vector<std::size_t> turns_of(const Polyline& line, bool closed, const std::vector<Vec2>& turns) {
+    std::vector<std::size_t> found;
+    if (turns.empty()) return found;
+    for (std::size_t i = closed ? 0 : 1; i < line.size() - (closed ? 0 : 1); ++i) {
+        if (std::binary_search(turns.begin(), turns.end(), line[i], before)) found.push_back(i);
+    }
+    return found;
+}
+
+/// Strokes a line with round joins at some of its points and the style's joins at the others: cut there, with
+/// a disc on every cut.
+void stroke_round_at(Polyline line, bool closed, std::vector<std::size_t> turns, const StrokeStyle& style,
+                     std::vector<Region>& parts) {
+    StrokeStyle blunt = style, disc = style;
+    blunt.cap = LineCap::butt;
+    disc.cap = LineCap::round;
+    if (closed) {
+        const std::size_t first = turns.front();
+        std::rotate(line.begin(), line.begin() + static_cast<std::ptrdiff_t>(first), line.end());
+        line.push_back(line.front());
+        for (std::size_t& turn : turns) turn -= first;
+    } else if (style.cap == LineCap::square) {
+        const double half = 0.5 * style.width;
+        const Vec2 backward = (line[0] - line[1]).normalized();
+        const Vec2 forward = (line[line.size() - 1] - line[line.size() - 2]).normalized();
+        line.front() += half * backward;
+        line.back() += half * forward;
+    } else if (style.cap == LineCap::round) {
+        parts.push_back(stroke({line.front()}, false, disc));
+        parts.push_back(stroke({line.back()}, false, disc));
+    }
+    auto from = line.begin();
+    for (const std::size_t turn : turns) {
+        parts.push_back(stroke({line[turn]}, false, disc));
+        const auto to = line.begin() + static_cast<std::ptrdiff_t>(turn);
+        if (to == from) continue;
+        parts.push_back(stroke({from, to + 1}, false, blunt));
+        from = to;
+    }
+    parts.push_back(stroke({from, line.end()}, false, blunt));
+}
+
 Region mapped(const Region& region, const Mat2& map) {
     const bool mirrors = map.determinant() < 0.0;
     std::vector<Polyline> loops;
@@ -170,6 +214,13 @@ Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
     std::vector<double> dashes = pen.dashes;
     for (double& dash : dashes) dash *= space.scale;
 
+    std::vector<Vec2> turns;
+    if (style.join != LineJoin::round) turns = lines.tight_turns;
+    if (!space.is_mm) {
+        for (Vec2& turn : turns) turn = from_mm * turn;
+    }
+    std::sort(turns.begin(), turns.end(), before);
+
     std::vector<Region> parts;
     for (std::size_t i = 0; i < lines.points.size(); ++i) {
         Polyline line = lines.points[i];
@@ -185,8 +236,14 @@ Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
         for (std::size_t k = 0; k < pieces.points.size(); ++k) {
             const Polyline& piece = pieces.points[k];
             const bool is_dot = piece.size() == 2 && (piece[1] - piece[0]).norm() <= hair;
-            parts.push_back(is_dot ? dot(piece[0], piece[1] - piece[0], style)
-                                   : stroke(piece, pieces.closed[k], style));
+            const std::vector<std::size_t> round = turns_of(piece, pieces.closed[k], turns);
+            if (is_dot) {
+                parts.push_back(dot(piece[0], piece[1] - piece[0], style));
+            } else if (round.empty()) {
+                parts.push_back(stroke(piece, pieces.closed[k], style));
+            } else {
+                stroke_round_at(piece, pieces.closed[k], round, style, parts);
+            }
         }
     }
     Region covered = parts.size() == 1 ? std::move(parts.front()) : unite(parts);

@@ -17,6 +17,7 @@ struct SvgPen {
 struct Lines {
     std::vector<Polyline> points;
     std::vector<bool> closed;
+    std::vector<Vec2> tight_turns = {};  ///< points of the lines where every pen is round (see FlatLine)
 };
 
 /// What the pen covers when it follows the lines (given after the map from user units to mm whose linear part

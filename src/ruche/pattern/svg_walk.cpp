@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "ruche/pattern/svg_elements.hpp"
 #include "ruche/pattern/svg_geometry.hpp"
 #include "ruche/pattern/svg_scanner.hpp"
 
@@ -16,31 +17,6 @@ namespace {
 
 constexpr std::size_t most_items = 50000;
 constexpr std::size_t most_use_visits = 100000;
-
-enum class Kind { group, svg, switch_, use, shape, silent, not_printed, unknown };
-
-Kind kind_of(std::string_view name) {
-    static constexpr std::string_view silent[] = {
-        "defs",          "symbol",           "title",          "desc",         "metadata",  "style",
-        "script",        "linearGradient",   "radialGradient", "meshgradient", "clipPath",  "mask",
-        "pattern",       "marker",           "filter",         "view",         "animate",   "set",
-        "animateMotion", "animateTransform", "cursor",         "font",         "font-face", "color-profile",
-        "solidColor",    "discard",          "animateColor",   "hatch",        "glyph",     "altGlyphDef",
-        "stop",          "missing-glyph",    "hkern",          "vkern",        "namedview"};
-    static constexpr std::string_view not_printed[] = {"text",  "flowRoot", "image",  "foreignObject",
-                                                       "video", "audio",    "canvas", "iframe"};
-    const auto is_in = [&](const auto& names) {
-        return std::find(std::begin(names), std::end(names), name) != std::end(names);
-    };
-    if (is_shape(name)) return Kind::shape;
-    if (name == "g" || name == "a") return Kind::group;
-    if (name == "svg") return Kind::svg;
-    if (name == "switch") return Kind::switch_;
-    if (name == "use") return Kind::use;
-    if (is_in(not_printed)) return Kind::not_printed;
-    // Other namespaces belong to drawing programs.
-    return is_in(silent) || name.find(':') != std::string_view::npos ? Kind::silent : Kind::unknown;
-}
 
 /// What holds for the children of an element.
 struct Context {
@@ -119,6 +95,7 @@ class Walker {
     Warnings& warnings_;
     std::vector<DrawnItem> items_;
     std::unordered_map<const pugi::xml_node_struct*, Known> known_;
+    std::unordered_map<const pugi::xml_node_struct*, std::optional<Colour>> gradients_;
     std::vector<pugi::xml_node> used_;  ///< targets that are being drawn
     std::size_t use_visits_ = 0;
     bool said_units_ = false;
@@ -349,24 +326,9 @@ std::optional<Colour> Walker::server_colour(const pugi::xml_node& node, const ch
                                             const Paint& paint) {
     const pugi::xml_node server = file_.by_id(paint.server);
     if (!server && paint.fallback) return paint.colour;
-    // A gradient may take its stops from another one; Inkscape's swatches have a single stop.
-    const std::string_view name = local_name(server);
-    pugi::xml_node gradient =
-        name == "linearGradient" || name == "radialGradient" ? server : pugi::xml_node();
-    std::optional<Colour> colour;
-    bool plain = true;
-    for (int hop = 0; gradient && !colour && hop < 10; ++hop, gradient = file_.referenced(gradient)) {
-        for (const pugi::xml_node& stop : gradient.children()) {
-            if (local_name(stop) != "stop") continue;
-            const Declared declared = file_.declared(stop);
-            const auto value = declared.find(Property::stop_color);
-            const std::optional<Colour> next =
-                value == declared.end() ? Colour{} : parse_css_colour(value->second);
-            plain = plain && next && (!colour || *colour == *next);
-            colour = next ? next : Colour{};
-        }
-    }
-    if (colour && plain) return colour;
+    const auto [entry, fresh] = gradients_.try_emplace(server.internal_object());
+    if (fresh) entry->second = plain_gradient(file_, server);
+    if (entry->second) return entry->second;
     warn(node, fmt::format("the {0} is no plain colour (url(#{1})): the {0} is not printed", what,
                            paint.server.substr(0, 60)));
     return std::nullopt;
@@ -425,11 +387,6 @@ void Walker::identify(DrawnItem& item, const Context& context) const {
 }
 
 }  // namespace
-
-std::string label_of(const pugi::xml_node& node) {
-    std::string label = node.attribute("inkscape:label").value();
-    return label.empty() ? std::string(node.attribute("data-name").value()) : label;
-}
 
 std::vector<DrawnItem> drawn_items(const SvgFile& file, const PageMap& page, Warnings& warnings) {
     return Walker(file, page, warnings).run();

@@ -37,7 +37,4 @@ struct DrawnItem {
 /// printed becomes a warning. Throws InputError for a drawing that never ends (use inside use inside use).
 std::vector<DrawnItem> drawn_items(const SvgFile& file, const PageMap& page, Warnings& warnings);
 
-/// The user's name of an element in a drawing program: Inkscape's label, Illustrator's data-name.
-std::string label_of(const pugi::xml_node& node);
-
 }  // namespace ruche::svg

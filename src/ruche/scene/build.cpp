@@ -45,7 +45,16 @@ Pattern scene_pattern(const Scene& scene) {
     const Drawing drawing = read_drawing(
         resolved_path(scene, scene.pattern.svg),
         {.flatten_tolerance_mm = scene.pattern.flatten_tolerance_mm, .width_mm = scene.pattern.width_mm});
-    return make_pattern(drawing, print_rules(scene));
+    try {
+        return make_pattern(drawing, print_rules(scene));
+    } catch (const InputError& error) {
+        // What the importer left out may be why nothing is left to print.
+        std::string advice = error.advice();
+        constexpr std::size_t most = 2;
+        for (std::size_t i = 0; i < std::min(most, drawing.warnings.size()); ++i)
+            advice += "\n  warning: " + drawing.warnings[i];
+        throw InputError(error.place(), error.problem(), advice);
+    }
 }
 
 /// Refuses a mesh that no machine could solve before trying to make it.
@@ -111,7 +120,7 @@ static std::vector<int> selected(const Scene& scene, const Selection& selection,
         high = high.cwiseMax(p);
     }
     throw InputError(
-        place_in(scene, path + ".min_mm"), "there is no vertex of the mesh in this box",
+        place_in(scene, path), "there is no vertex of the mesh in this box",
         fmt::format("The layout reaches from [{:.4g}, {:.4g}] to [{:.4g}, {:.4g}] mm. A box that is "
                     "narrower than an element may miss every vertex.",
                     low.x(), low.y(), high.x(), high.y()));
@@ -134,7 +143,7 @@ static std::vector<Support> model_supports(const Scene& scene, const TriangleMes
                 if (support.fix.find("xyz"[axis]) == std::string::npos) continue;
                 if (entry.fixed[axis] && entry.at[k] != at[k])
                     throw InputError(
-                        place_in(scene, path + ".min_mm"),
+                        place_in(scene, path),
                         fmt::format("takes the vertex at [{:.4g}, {:.4g}] mm somewhere else than an "
                                     "earlier support does",
                                     p.x(), p.y()));
@@ -180,8 +189,7 @@ static void check_held(const Scene& scene, const ModelInput& model) {
         for (std::size_t k = 0; k < 3; ++k)
             if (pulled[piece][k] && !held[piece][k])
                 throw InputError(
-                    place_in(scene,
-                             scene.supports.empty() ? "gravity.acceleration_mm_per_s2" : "support.1.min_mm"),
+                    place_in(scene, scene.supports.empty() ? "gravity.acceleration_mm_per_s2" : "support.1"),
                     fmt::format("piece {} of {} of the sheet is pulled along {} and held nowhere against it",
                                 piece + 1, count, "xyz"[k]),
                     "Support every connected piece of the fabric.");

@@ -2,6 +2,7 @@
 #include <fmt/ranges.h>
 
 #include "ruche/core/document.hpp"
+#include "ruche/pattern/generator_registry.hpp"
 #include "ruche/scene/write_scene.hpp"
 
 namespace ruche {
@@ -125,6 +126,12 @@ std::string scene_manual() {
         if (name == "plastic")
             text += heading("[[plastic.rule]]", "Which drawn shapes mean what.") + rows(PrintRule{});
     });
+    for (const GeneratorInfo& generator : generators()) {
+        text += heading(fmt::format("[pattern.options] of {}", generator.name), generator.summary);
+        for (const GeneratorOption& option : generator.options)
+            text += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", option.key, option.initial, option.unit,
+                                markdown_cell(option.range), markdown_cell(option.meaning));
+    }
     text += heading("[[support]]", "Vertices that are held.") + rows(Selection{}) + rows(SupportOptions{});
     text += heading("[[force]]", "Dead forces.") + rows(Selection{}) + rows(ForceOptions{});
     return text;

@@ -129,8 +129,8 @@ static void read_selections(TableReader& root, std::string_view key, Scene& scen
         read_selection(reader, options);
         reader.read(options);
         reader.finish();
-        const std::string path = reader.path_of("min_mm");
-        scene.sources.emplace(path, reader.place_of_key("min_mm"));  // so that later checks know the line
+        const std::string path = fmt::format("{}.{}", key, all.size() + 1);
+        scene.sources.emplace(path, place_of(*node, path));  // for what is found when the mesh is known
         all.push_back(options);
     }
 }

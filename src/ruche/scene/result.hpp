@@ -12,9 +12,10 @@ namespace ruche {
 
 /// A finished (or interrupted) run: the complete resolved scene, the mesh, the shape and how it was reached.
 struct Result {
-    Scene scene;              ///< every default written out
-    PrintMesh layout;         ///< flat, mm
-    std::vector<Vec3> shape;  ///< one position per vertex, mm
+    Scene scene;                         ///< every default written out
+    PrintMesh layout;                    ///< flat, mm
+    std::vector<Vec3> shape;             ///< one position per vertex, mm
+    std::vector<double> energy_density;  ///< elastic energy per triangle, mJ/mm^2 of layout
     Equilibrium equilibrium;
     std::vector<std::string>
         assumptions;  ///< "fabric_thickness = 0.46 mm: not in the paper, implied by k_B", ...

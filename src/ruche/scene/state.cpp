@@ -13,6 +13,7 @@
 #include "ruche/core/atomic_file.hpp"
 #include "ruche/core/document.hpp"
 #include "ruche/meshing/point_locator.hpp"
+#include "ruche/scene/build.hpp"
 #include "ruche/scene/write_scene.hpp"
 
 namespace ruche {
@@ -138,7 +139,15 @@ std::uint64_t fingerprint(const ModelInput& model) {
     return hash(out.bytes);
 }
 
-void write_state(const std::string& path, const State& state) {
+State state_of(const Result& result) {
+    return {.scene = to_toml(result.scene),
+            .fingerprint = fingerprint(scene_model(result.scene, result.layout)),
+            .layout = result.layout.mesh,
+            .x = result.equilibrium.x,
+            .iterations = result.equilibrium.iterations};
+}
+
+std::string to_bytes(const State& state) {
     Writer out;
     out.bytes = signature;
     out.text(state.scene);
@@ -148,7 +157,11 @@ void write_state(const std::string& path, const State& state) {
     out.numbers(state.x);
     out.number(state.iterations);
     out.number(hash(out.bytes));
-    write_file_atomically(path, out.bytes);
+    return out.bytes;
+}
+
+void write_state(const std::string& path, const State& state) {
+    write_file_atomically(path, to_bytes(state));
 }
 
 State read_state(const std::string& path) {

@@ -7,6 +7,7 @@
 
 #include "ruche/core/control.hpp"
 #include "ruche/energy/model.hpp"
+#include "ruche/scene/result.hpp"
 #include "ruche/scene/scene.hpp"
 
 namespace ruche {
@@ -23,6 +24,12 @@ struct State {
 /// Changes with anything that changes the energy: mesh, print, material, loads, supports, model choices. The
 /// same on every machine.
 std::uint64_t fingerprint(const ModelInput& model);
+
+/// Where a finished or interrupted run stands.
+State state_of(const Result& result);
+
+/// The contents of a state file.
+std::string to_bytes(const State& state);
 
 /// Throws std::runtime_error when it cannot be written; an earlier file is then left as it was.
 void write_state(const std::string& path, const State& state);

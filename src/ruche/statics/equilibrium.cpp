@@ -56,13 +56,14 @@ class Newton {
           retraction_(model),
           cholesky_({model.size(), model.pattern().column_start(), model.pattern().row_index()},
                     elimination_order(model)),
-          held_(model.size(), 0) {
+          held_(model.size(), 0),
+          taut_(!model.input().supports.empty() || !model.input().forces.empty()) {
         for (const Support& support : model.input().supports) {
             for (int c = 0; c < 3; ++c) held_[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
         }
     }
 
-    Equilibrium run(Eigen::VectorXd x);
+    Equilibrium run(const Eigen::VectorXd& start);
 
   private:
     /// rms rotation of a step above which the sheet is "turning" and the Gauss-Newton form is the better
@@ -78,13 +79,14 @@ class Newton {
             if (held_[i]) sums_.gradient[i] = 0.0;
         }
     }
+    Order positive_order() const { return taut_ ? Order::gauss_newton_taut : Order::gauss_newton; }
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     double energy_scale() const {
         return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
                std::abs(terms_.gravity);
     }
 
-    bool factorize(double shift = 0.0);
+    bool factorize(Order order, double shift = 0.0);
     bool solve_step(Order order);
     bool line_search();
     bool leave_saddle();
@@ -97,6 +99,8 @@ class Newton {
     Retraction retraction_;
     SparseCholesky cholesky_;
     std::vector<char> held_;
+    bool taut_;  // supports or forces may keep the sheet under tension: no release in which it cancels along
+                 // the path
 
     Eigen::VectorXd x_;
     Eigen::VectorXd step_;
@@ -108,10 +112,12 @@ class Newton {
     int factorizations_ = 0;
 };
 
-bool Newton::factorize(double shift) {
+bool Newton::factorize(Order order, double shift) {
     const NodePattern& pattern = model_.pattern();
     matrix_ = sums_.hessian;
-    for (const GaugeDirection& gauge : rigid_.gauge(x_)) {
+    const auto resisting = order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
+                                                   : RigidMotions::Resisting::supports;
+    for (const GaugeDirection& gauge : rigid_.gauge(x_, resisting)) {
         const int at = pattern.block_offset(gauge.vertex, gauge.vertex);
         const int length = pattern.column_length(gauge.vertex);
         const double stiffness =
@@ -138,17 +144,17 @@ bool Newton::factorize(double shift) {
 /// Factorises (evaluating again with the Gauss-Newton form where the exact Hessian is not positive definite)
 /// and solves for the step. False when not even a shifted Gauss-Newton matrix can be factorised.
 bool Newton::solve_step(Order order) {
-    bool ready = factorize();
+    bool ready = factorize(order);
     if (!ready && order == Order::hessian) {
-        evaluate(Order::gauss_newton);
-        ready = factorize();
+        evaluate(positive_order());
+        ready = factorize(positive_order());
     }
     if (!ready) {
         double mean = 0.0;
         for (int n = 0; n < model_.size(); ++n)
             mean += sums_.hessian[model_.pattern().column_start()[n]] / model_.size();
         for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
-            ready = factorize(shift);
+            ready = factorize(positive_order(), shift);
     }
     if (ready) step_ = cholesky_.solve(-sums_.gradient);
     return ready && step_.allFinite();
@@ -190,7 +196,8 @@ bool Newton::leave_saddle() {
     for (int n = 0; n < model_.size(); ++n)
         mean += std::abs(sums_.hessian[model_.pattern().column_start()[n]]) / model_.size();
     bool ready = false;
-    for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0) ready = factorize(shift);
+    for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0)
+        ready = factorize(Order::hessian, shift);
     if (!ready) return false;
     Eigen::VectorXd direction(model_.size());
     for (int i = 0; i < model_.size(); ++i) direction[i] = held_[i] ? 0.0 : noise(options_.seed + 77, i);
@@ -222,16 +229,16 @@ void Newton::report() const {
                       " mJ, residual " + short_number(residual()) + " N"});
 }
 
-Equilibrium Newton::run(Eigen::VectorXd x) {
-    x_ = std::move(x);
+Equilibrium Newton::run(const Eigen::VectorXd& start) {
+    x_ = retraction_.meet_supports(start);
     Equilibrium result;
     double rotation = infinity;
     int gauss_newton_left = 0;
     int escapes = 0;
     bool stalled = false;
     for (;;) {
-        const bool exact = rotation <= turning && gauss_newton_left == 0;
-        const Order order = exact ? Order::hessian : Order::gauss_newton;
+        const bool exact = taut_ || (rotation <= turning && gauss_newton_left == 0);
+        const Order order = exact ? Order::hessian : positive_order();
         evaluate(order);
         report();
         result.residual = residual();
@@ -241,7 +248,7 @@ Equilibrium Newton::run(Eigen::VectorXd x) {
         }
         if (result.residual <= options_.residual_tolerance_n || stalled) {
             if (!exact) evaluate(Order::hessian);
-            result.stable = factorize();
+            result.stable = factorize(Order::hessian);
             if (result.stable || escapes == 5) {
                 result.status = result.residual <= options_.residual_tolerance_n ? SolveStatus::converged
                                                                                  : SolveStatus::not_converged;
@@ -320,9 +327,7 @@ Equilibrium solve(const Model& model, const SolveOptions& options, const Control
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
     Newton newton(model, options, control);
-    Retraction retraction(model);
-    Eigen::VectorXd x = retraction.meet_supports(start != nullptr ? *start : noisy_start(model, options));
-    Equilibrium result = newton.run(std::move(x));
+    Equilibrium result = newton.run(start != nullptr ? *start : noisy_start(model, options));
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return result;
 }

@@ -47,7 +47,7 @@ RigidMotions::RigidMotions(const Model& model) {
     table_ = input.table.present;
 }
 
-std::vector<GaugeDirection> RigidMotions::gauge(const Eigen::VectorXd& x) const {
+std::vector<GaugeDirection> RigidMotions::gauge(const Eigen::VectorXd& x, Resisting resisting) const {
     std::vector<GaugeDirection> result;
     const auto at = [&](int v) -> Vec3 { return x.segment<3>(3 * static_cast<Eigen::Index>(v)); };
     for (const Piece& piece : pieces_) {
@@ -74,8 +74,9 @@ std::vector<GaugeDirection> RigidMotions::gauge(const Eigen::VectorXd& x) const 
                 if (support.fixed[c]) resisted.emplace_back(motions.row(c));
             }
         }
+        const bool loads = resisting == Resisting::supports_and_loads;
         const bool heavy = gravity_.norm() > 0.0;
-        if (heavy || table_) {
+        if (loads && (heavy || table_)) {
             // Height, and rotations about horizontal axes.
             const Vec3 up = heavy ? Vec3(-gravity_.normalized()) : Vec3::UnitZ();
             Eigen::RowVectorXd height = Eigen::RowVectorXd::Zero(6);
@@ -95,7 +96,7 @@ std::vector<GaugeDirection> RigidMotions::gauge(const Eigen::VectorXd& x) const 
             const Mat3 outer = arm * load.force.transpose();
             stiffness += arm.dot(load.force) * Mat3::Identity() - 0.5 * (outer + outer.transpose());
         }
-        if (stiffness.norm() > 0.0) {
+        if (loads && stiffness.norm() > 0.0) {
             stiffness /= stiffness.norm();
             for (int axis = 0; axis < 3; ++axis) {
                 Eigen::RowVectorXd turn = Eigen::RowVectorXd::Zero(6);

@@ -24,8 +24,13 @@ class RigidMotions {
   public:
     explicit RigidMotions(const Model& model);
 
+    /// What is taken to resist a rigid motion: an exact Hessian knows of gravity, the table and dead forces,
+    /// a Gauss-Newton one of supports only (loads resist rotations through the geometric stiffness, which it
+    /// lacks).
+    enum class Resisting { supports, supports_and_loads };
+
     /// For the shape x; the vertices that carry them are far apart in it.
-    std::vector<GaugeDirection> gauge(const Eigen::VectorXd& x) const;
+    std::vector<GaugeDirection> gauge(const Eigen::VectorXd& x, Resisting resisting) const;
 
   private:
     struct Piece {

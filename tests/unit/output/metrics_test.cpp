@@ -167,6 +167,18 @@ TEST_CASE("strip metrics: a ring on a sphere has the sphere's curvature whatever
     CHECK(m.curvature == doctest::Approx(1 / radius).epsilon(0.02));
 }
 
+TEST_CASE("strip metrics: corners of the drawing are not bends of the sheet") {
+    PrintMesh mesh = strip_mesh(20, 20, 40, 40, Kind::lattice);
+    // Along x on a cylinder about y, then along y, which stays straight: equal lengths, half the curvature.
+    add_strip(mesh, 64, [](double u) {
+        const double s = 16.1 * u;
+        return s < 8 ? Vec2(2 + s, -4) : Vec2(10, -4 + (s - 8));
+    });
+    const StripMetrics m = measure_strips(mesh, map_vertices(mesh, roll(0.1))).front();
+    CHECK(m.curvature == doctest::Approx(0.05).epsilon(0.03));
+    CHECK(m.fit_rms < 0.01);
+}
+
 TEST_CASE("strip metrics: a strip without a centre line has no numbers, the others keep theirs") {
     PrintMesh mesh = strip_mesh(30, 1, 30, 1, Kind::lattice);
     mesh.strips.push_back({.id = "blob"});

@@ -55,9 +55,9 @@ TEST_CASE("outputs: all that the scene asks for, into a folder that is made, rep
     }};
     const auto written = write_outputs(small_result(), (folder.path / "a").string(), control);
     const auto files = contents(folder.path / "a");
-    CHECK(files.size() == 10);
-    CHECK(written.size() == 10);
-    CHECK(reports == 10);
+    CHECK(files.size() == 12);
+    CHECK(written.size() == 12);
+    CHECK(reports == 12);
     CHECK(fs::path(written.back()).filename() == "report.json");
     CHECK(nlohmann::json::parse(files.at("report.json"))["status"] == "converged");
     CHECK(files.at("picture.png").starts_with("\x89PNG"));
@@ -71,8 +71,9 @@ TEST_CASE("outputs: a second result replaces the first, leaves foreign files and
     result.scene.output = {.obj = false, .ply = true, .vtu = false, .glb = false, .picture = false};
     write_outputs(result, folder.path.string());
     const auto files = contents(folder.path);
-    CHECK(files.size() == 4);
-    for (const char* name : {"shape.ply", "layout.ply", "report.json", "notes.txt"})
+    CHECK(files.size() == 6);
+    for (const char* name :
+         {"shape.ply", "layout.ply", "scene.toml", "state.ruche", "report.json", "notes.txt"})
         CHECK(files.count(name) == 1);
 }
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+
+#include "ruche/cli/exit_code.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace ruche {
+
+/// What the chosen verb does, once the command line is read.
+using Action = std::function<ExitCode()>;
+
+/// Each adds one verb with its options to the program; when the user chooses it, `action` is set.
+void add_simulate(CLI::App& program, Action& action);
+void add_check(CLI::App& program, Action& action);
+void add_pattern(CLI::App& program, Action& action);
+void add_cards(CLI::App& program, Action& action);
+void add_template(CLI::App& program, Action& action);
+
+}  // namespace ruche

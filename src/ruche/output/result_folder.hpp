@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "ruche/core/control.hpp"
+#include "ruche/scene/result.hpp"
+
+namespace ruche {
+
+/// Throws std::runtime_error when results could not be written there: a file stands in the way, or there is
+/// no permission. To be asked before a long computation.
+void check_result_folder(const std::string& folder);
+
+/// Whether the folder holds the result of a run that came to its end.
+bool holds_finished_result(const std::string& folder);
+
+/// `write_outputs`, but an interrupted result does not replace a finished one: then only state.ruche is
+/// written. Returns the paths written. Throws std::runtime_error when the disk does not take it; the earlier
+/// result is then still there.
+std::vector<std::string> write_result(const Result& result, const std::string& folder,
+                                      const Control& control = {});
+
+}  // namespace ruche

@@ -1,0 +1,57 @@
+#include "ruche/pattern/svg_elements.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "ruche/pattern/svg_geometry.hpp"
+
+namespace ruche::svg {
+
+Kind kind_of(std::string_view name) {
+    static constexpr std::string_view silent[] = {
+        "defs",          "symbol",           "title",          "desc",         "metadata",  "style",
+        "script",        "linearGradient",   "radialGradient", "meshgradient", "clipPath",  "mask",
+        "pattern",       "marker",           "filter",         "view",         "animate",   "set",
+        "animateMotion", "animateTransform", "cursor",         "font",         "font-face", "color-profile",
+        "solidColor",    "discard",          "animateColor",   "hatch",        "glyph",     "altGlyphDef",
+        "stop",          "missing-glyph",    "hkern",          "vkern",        "namedview"};
+    static constexpr std::string_view not_printed[] = {"text",  "flowRoot", "image",  "foreignObject",
+                                                       "video", "audio",    "canvas", "iframe"};
+    const auto is_in = [&](const auto& names) {
+        return std::find(std::begin(names), std::end(names), name) != std::end(names);
+    };
+    if (is_shape(name)) return Kind::shape;
+    if (name == "g" || name == "a") return Kind::group;
+    if (name == "svg") return Kind::svg;
+    if (name == "switch") return Kind::switch_;
+    if (name == "use") return Kind::use;
+    if (is_in(not_printed)) return Kind::not_printed;
+    return is_in(silent) || name.find(':') != std::string_view::npos ? Kind::silent : Kind::unknown;
+}
+
+std::optional<Colour> plain_gradient(const SvgFile& file, const pugi::xml_node& server) {
+    const std::string_view name = local_name(server);
+    if (name != "linearGradient" && name != "radialGradient") return std::nullopt;
+    std::optional<Colour> common;
+    // A gradient without stops takes those of another one.
+    pugi::xml_node gradient = server;
+    for (int hop = 0; gradient && !common && hop < 10; ++hop, gradient = file.referenced(gradient)) {
+        for (const pugi::xml_node& stop : gradient.children()) {
+            if (local_name(stop) != "stop") continue;
+            const Declared declared = file.declared(stop);
+            const auto value = declared.find(Property::stop_color);
+            const std::optional<Colour> colour =
+                value == declared.end() ? Colour{} : parse_css_colour(value->second);
+            if (!colour || (common && *common != *colour)) return std::nullopt;
+            common = colour;
+        }
+    }
+    return common;
+}
+
+std::string label_of(const pugi::xml_node& node) {
+    std::string label = node.attribute("inkscape:label").value();
+    return label.empty() ? std::string(node.attribute("data-name").value()) : label;
+}
+
+}  // namespace ruche::svg

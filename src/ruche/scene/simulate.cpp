@@ -1,0 +1,115 @@
+#include "ruche/scene/simulate.hpp"
+
+#include <chrono>
+
+#include "ruche/core/parallel.hpp"
+#include "ruche/geometry/self_intersection.hpp"
+#include "ruche/scene/build.hpp"
+#include "ruche/scene/check_scene.hpp"
+
+namespace ruche {
+namespace {
+
+class Stopwatch {
+  public:
+    double lap() {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - begin_).count();
+        begin_ = now;
+        return seconds;
+    }
+
+  private:
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+/// Goes on from `first`; the effort of both counts.
+Equilibrium solve_on(const Model& model, const SolveOptions& options, const Control& control,
+                     const Equilibrium& first) {
+    Equilibrium second = solve(model, options, control, &first.x);
+    second.iterations += first.iterations;
+    second.factorizations += first.factorizations;
+    second.seconds += first.seconds;
+    return second;
+}
+
+/// A sheet that rests on a table is released in free space first and then laid down: from the flat state,
+/// pressed on the table, it could not curl.
+Equilibrium release(const ModelInput& input, const SolveOptions& options, const Control& control,
+                    const Eigen::VectorXd* start) {
+    if (!input.table.present) return solve(Model(input), options, control, start);
+    const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
+    const Vec3 up = gravity.norm() > 0.0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ();
+    Equilibrium first;
+    if (start != nullptr) {
+        first.x = *start;
+    } else {
+        ModelInput weightless = input;
+        weightless.gravity = {0, 0, 0};
+        weightless.table.present = false;
+        first = solve(Model(std::move(weightless)), options, control);
+        if (first.status != SolveStatus::converged) return first;
+        const auto vertices = static_cast<Eigen::Index>(input.mesh.vertices.size());
+        double lowest = infinity;
+        for (Eigen::Index v = 0; v < vertices; ++v)
+            lowest = std::min(lowest, up.dot(first.x.segment<3>(3 * v)));
+        for (Eigen::Index v = 0; v < vertices; ++v)
+            first.x.segment<3>(3 * v) += (input.table.height - lowest) * up;
+    }
+    return solve_on(Model(input), options, control, first);
+}
+
+}  // namespace
+
+Result simulate(const Scene& scene, const Control& control, const Start& start) {
+    Stopwatch watch;
+    Result result;
+    result.scene = scene;
+    check_scene(scene);
+    result.warnings = scene.warnings;
+    if (scene.solver.threads > 0) set_thread_count(scene.solver.threads);
+
+    control.say({"mesh", 0.0, "meshing"});
+    result.layout = scene_mesh(scene);
+    result.warnings.insert(result.warnings.end(), result.layout.warnings.begin(),
+                           result.layout.warnings.end());
+    ModelInput input = scene_model(scene, result.layout);
+    result.seconds["mesh"] = watch.lap();
+    control.say({"mesh", 1.0,
+                 std::to_string(input.mesh.triangle_count()) + " triangles, " +
+                     std::to_string(input.mesh.vertex_count()) + " vertices"});
+
+    Eigen::VectorXd from;
+    if (start.state != nullptr) {
+        from = start.resume ? resume_from(*start.state, scene, input, start.path)
+                            : start_from(*start.state, input.mesh, Model(input).size());
+    }
+    result.equilibrium = release(input, scene.solver, control, from.size() > 0 ? &from : nullptr);
+    if (result.equilibrium.health.beyond_law > 0 && input.options.log_extension > 1e-6 &&
+        result.equilibrium.status == SolveStatus::converged) {
+        // The shape leans on the law's linear extension: go on with the paper's much steeper one.
+        input.options.log_extension = 1e-6;
+        result.equilibrium = solve_on(Model(input), scene.solver, control, result.equilibrium);
+        result.warnings.push_back(
+            "the fabric is stretched into the limit of its law somewhere; the log extension was narrowed to "
+            "1e-6");
+    }
+    result.seconds["release"] = watch.lap();
+
+    const Model model(input);
+    for (int v = 0; v < model.vertex_count(); ++v)
+        result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
+    result.energy_density = model.energy_density(result.equilibrium.x);
+    result.equilibrium.health.self_intersections =
+        static_cast<int>(find_self_intersections(result.shape, result.layout.mesh.triangles).size());
+    if (result.equilibrium.health.self_intersections > 0) {
+        result.warnings.push_back("the sheet passes through itself at " +
+                                  std::to_string(result.equilibrium.health.self_intersections) +
+                                  " pairs of triangles: contact is not simulated");
+    }
+    result.assumptions = assumptions(scene);
+    result.seconds["check"] = watch.lap();
+    return result;
+}
+
+}  // namespace ruche

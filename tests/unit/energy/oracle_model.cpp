@@ -1,0 +1,208 @@
+#include "energy/oracle_model.hpp"
+
+#include <map>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "energy/oracle.hpp"
+
+namespace ruche::test {
+namespace {
+
+/// The triangles on an edge with the local index of the edge in each, in order of appearance.
+struct Sides {
+    std::vector<std::pair<int, int>> of;
+    int unknown = -1;
+};
+using Key = std::pair<int, int>;
+
+class Oracle {
+  public:
+    Oracle(const ModelInput& input, const Eigen::VectorXd& x)
+        : input_(input), x_(x), vertices_(input.mesh.vertex_count()) {
+        if (input_.print.empty()) input_.print.resize(input_.mesh.triangles.size());
+        const double phi = input.fabric_axis_deg * std::numbers::pi / 180.0;
+        relax_ << std::cos(phi) / input.prestretch[0], std::sin(phi) / input.prestretch[0],
+            -std::sin(phi) / input.prestretch[1], std::cos(phi) / input.prestretch[1];
+        sums_ = {0.0, Eigen::VectorXd::Zero(x.size()), Eigen::MatrixXd::Zero(x.size(), x.size())};
+        find_sides();
+    }
+
+    Sums run() {
+        for (int t = 0; t < input_.mesh.triangle_count(); ++t) {
+            if (bare(t)) {
+                add_fabric(t);
+            } else {
+                add_laminate(t);
+            }
+            add_weight(t);
+        }
+        for (const Key& key : order_) add_hinge(sides_.at(key));
+        for (const NodalForce& f : input_.forces) add_force(f.vertex, f.force);
+        if (input_.table.present) add_table();
+        return sums_;
+    }
+
+  private:
+    bool bare(int t) const { return input_.print[t].front == 0.0 && input_.print[t].back == 0.0; }
+    int vertex(int t, int i) const { return input_.mesh.triangles[t][i % 3]; }
+    Vec2 layout(int t, int i) const { return input_.mesh.vertices[vertex(t, i)]; }
+    Key key(int t, int i) const { return std::minmax(vertex(t, i + 1), vertex(t, i + 2)); }
+    double area(int t) const {
+        const Vec2 p = layout(t, 1) - layout(t, 0);
+        const Vec2 q = layout(t, 2) - layout(t, 0);
+        return 0.5 * (p.x() * q.y() - p.y() * q.x());
+    }
+
+    void find_sides() {
+        for (int t = 0; t < input_.mesh.triangle_count(); ++t) {
+            for (int i = 0; i < 3; ++i) {
+                if (!sides_.contains(key(t, i))) order_.push_back(key(t, i));
+                sides_[key(t, i)].of.emplace_back(t, i);
+            }
+        }
+        int next = 3 * vertices_;
+        for (const Key& k : order_) {
+            Sides& s = sides_[k];
+            const bool inner = s.of.size() == 2 && !bare(s.of[0].first) && !bare(s.of[1].first);
+            if (inner && input_.options.edge_normals == EdgeNormals::free) s.unknown = next++;
+        }
+    }
+
+    /// Adds an element; `nodes` are vertices (or -1), `extra` further unknowns (or -1).
+    template <int N, class Element>
+    void add(const Element& element, const std::vector<int>& nodes, const std::vector<int>& extra = {}) {
+        std::vector<int> at;
+        for (const int v : nodes) {
+            for (int c = 0; c < 3; ++c) at.push_back(v < 0 ? -1 : 3 * v + c);
+        }
+        at.insert(at.end(), extra.begin(), extra.end());
+        std::vector<Jet<N>> local;
+        for (int i = 0; i < N; ++i) local.push_back(Jet<N>::unknown(i, at[i] < 0 ? 0.0 : x_[at[i]]));
+        const Jet<N> energy = element.template energy<Jet<N>>(local);
+        sums_.value += energy.value;
+        for (int i = 0; i < N; ++i) {
+            if (at[i] < 0) continue;
+            sums_.gradient[at[i]] += energy.gradient[i];
+            for (int j = 0; j < N; ++j) {
+                if (at[j] >= 0) sums_.hessian(at[i], at[j]) += energy.hessian(i, j);
+            }
+        }
+    }
+
+    void add_fabric(int t) {
+        const bool tensor = input_.options.shear_strain == ShearStrain::tensor;
+        const FabricElement element{{relax_ * layout(t, 0), relax_ * layout(t, 1), relax_ * layout(t, 2)},
+                                    input_.material,
+                                    {.log_extension = input_.options.log_extension, .tensor_shear = tensor}};
+        add<9>(element, {vertex(t, 0), vertex(t, 1), vertex(t, 2)});
+    }
+
+    void add_hinge(const Sides& s) {
+        if (s.of.size() < 2) return;
+        const auto [t, i] = s.of[0];
+        const auto [u, j] = s.of[1];
+        if (!bare(t) && !bare(u)) return;
+        const double rest_area = (area(t) + area(u)) / (input_.prestretch[0] * input_.prestretch[1]);
+        const double length2 = (relax_ * (layout(t, i + 2) - layout(t, i + 1))).squaredNorm();
+        const double factor = input_.options.bending_normalisation == BendingNormalisation::plate ? 1.0 : 6.0;
+        const HingeElement element{factor * input_.material.fabric_bending_stiffness * length2 / rest_area};
+        add<12>(element, {vertex(t, i + 1), vertex(t, i + 2), vertex(t, i), vertex(u, j)});
+    }
+
+    void add_laminate(int t) {
+        const Material& m = input_.material;
+        const Print& print = input_.print[t];
+        const double scale = input_.options.laminate_thickness == LaminateThickness::as_printed ? 0.5 : 1.0;
+        const double fabric = scale * m.fabric_thickness;
+        Mat2 edges;
+        edges << layout(t, 1) - layout(t, 0), layout(t, 2) - layout(t, 0);
+        const Mat2 metric = edges.transpose() * edges;
+        const Mat2 fabric_metric = edges.transpose() * relax_.transpose() * relax_ * edges;
+        const double front_modulus =
+            print.front_modulus > 0.0 ? print.front_modulus : m.plastic_youngs_modulus;
+        const double back_modulus = print.back_modulus > 0.0 ? print.back_modulus : m.plastic_youngs_modulus;
+        // z = 0 at the interface; in mid-fabric when both sides are printed.
+        double bottom = print.back > 0.0 ? 0.0 : -fabric;
+        if (print.front > 0.0 && print.back > 0.0) bottom = -0.5 * fabric;
+        LaminateElement element{{}, m.laminate_poissons_ratio};
+        element.element.plies = {
+            {bottom, bottom + fabric, m.fabric_youngs_modulus, fabric_metric},
+            {bottom + fabric, bottom + fabric + scale * print.front, front_modulus, metric},
+            {bottom - scale * print.back, bottom, back_modulus, metric}};
+        std::vector<int> nodes = {vertex(t, 0), vertex(t, 1), vertex(t, 2)};
+        std::vector<int> unknowns;
+        for (int i = 0; i < 3; ++i) {
+            const Sides& s = sides_[key(t, i)];
+            LaminateTerm::EdgeSide& side = element.element.sides[i];
+            nodes.push_back(-1);
+            unknowns.push_back(s.unknown);
+            side.kind = rim_kind();
+            if (s.of.size() < 2) continue;
+            const bool first = s.of[0].first == t;
+            const auto [u, j] = s.of[first ? 1 : 0];
+            if (bare(u) && input_.options.edge_normals == EdgeNormals::free) continue;
+            nodes.back() = vertex(u, j);
+            const double length = (layout(t, i + 2) - layout(t, i + 1)).norm();
+            side = {.kind = LaminateTerm::EdgeSide::Kind::hinged,
+                    .flap = nodes.back(),
+                    .unknown = s.unknown,
+                    .sign = first ? 1.0 : -1.0,
+                    .mean_altitude = (area(t) + area(u)) / length};
+        }
+        nodes.resize(6, -1);
+        add<21>(element, nodes, unknowns);
+    }
+
+    LaminateTerm::EdgeSide::Kind rim_kind() const {
+        return input_.options.edge_normals == EdgeNormals::free ? LaminateTerm::EdgeSide::Kind::free_rim
+                                                                : LaminateTerm::EdgeSide::Kind::clamped_rim;
+    }
+
+    void add_force(int v, const Vec3& force) {
+        sums_.value -= force.dot(x_.segment<3>(3 * v));
+        sums_.gradient.segment<3>(3 * v) -= force;
+    }
+
+    void add_weight(int t) {
+        const Material& m = input_.material;
+        const Print& print = input_.print[t];
+        const double relaxed_area = area(t) / (input_.prestretch[0] * input_.prestretch[1]);
+        const double mass = 1e-9 * m.fabric_areal_density * relaxed_area +
+                            1e-12 * m.plastic_density * (print.front + print.back) * area(t);
+        const Vec3 g(input_.gravity[0], input_.gravity[1], input_.gravity[2]);
+        for (int i = 0; i < 3; ++i) add_force(vertex(t, i), mass / 3.0 * g);
+    }
+
+    void add_table() {
+        const Vec3 g(input_.gravity[0], input_.gravity[1], input_.gravity[2]);
+        const Vec3 up = -g / g.norm();
+        std::vector<double> share(vertices_, 0.0);
+        for (int t = 0; t < input_.mesh.triangle_count(); ++t) {
+            for (int i = 0; i < 3; ++i) share[vertex(t, i)] += area(t) / 3.0;
+        }
+        for (int v = 0; v < vertices_; ++v) {
+            const double depth = input_.table.height - up.dot(x_.segment<3>(3 * v));
+            if (depth <= 0.0) continue;
+            const double k = input_.table.stiffness_per_area * share[v];
+            sums_.value += 0.5 * k * depth * depth;
+            sums_.gradient.segment<3>(3 * v) -= k * depth * up;
+            sums_.hessian.block<3, 3>(3 * v, 3 * v) += k * up * up.transpose();
+        }
+    }
+
+    ModelInput input_;
+    const Eigen::VectorXd& x_;
+    int vertices_;
+    Mat2 relax_;
+    std::map<Key, Sides> sides_;
+    std::vector<Key> order_;
+    Sums sums_;
+};
+
+}  // namespace
+
+Sums oracle_sums(const ModelInput& input, const Eigen::VectorXd& x) { return Oracle(input, x).run(); }
+
+}  // namespace ruche::test

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+#include "ruche/pattern/drawing.hpp"
+
+/// Drawings written in the tests themselves.
+namespace svg_text {
+
+/// A file in the temporary directory that is gone with this object.
+class TemporaryFile {
+  public:
+    explicit TemporaryFile(std::string_view text, const std::string& name = "drawing.svg") {
+        // The address tells apart what runs in one process, the directory what runs in several.
+        folder_ = std::filesystem::temp_directory_path() /
+                  ("ruche-svg-" + std::to_string(std::hash<std::string_view>()(text)) + "-" +
+                   std::to_string(reinterpret_cast<std::uintptr_t>(this)));
+        std::filesystem::create_directories(folder_);
+        path_ = (folder_ / name).string();
+        std::ofstream(path_, std::ios::binary) << text;
+    }
+    ~TemporaryFile() { std::filesystem::remove_all(folder_); }
+    TemporaryFile(const TemporaryFile&) = delete;
+    TemporaryFile& operator=(const TemporaryFile&) = delete;
+
+    const std::string& path() const { return path_; }
+
+  private:
+    std::filesystem::path folder_;
+    std::string path_;
+};
+
+inline ruche::Drawing read(std::string_view text, const ruche::DrawingOptions& options = {}) {
+    const TemporaryFile file(text);
+    return ruche::read_svg(file.path(), options);
+}
+
+/// The body on a page of 100 x 100 mm whose user units are mm.
+inline std::string on_page(std::string_view body) {
+    return "<svg xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+           "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"100mm\" height=\"100mm\" "
+           "viewBox=\"0 0 100 100\">\n" +
+           std::string(body) + "\n</svg>\n";
+}
+
+inline ruche::Drawing draw(std::string_view body, const ruche::DrawingOptions& options = {}) {
+    return read(on_page(body), options);
+}
+
+inline bool warns(const ruche::Drawing& drawing, std::string_view text) {
+    for (const std::string& warning : drawing.warnings) {
+        if (warning.find(text) != std::string::npos) return true;
+    }
+    return false;
+}
+
+struct Extent {
+    double left = 1e300, right = -1e300, low = 1e300, high = -1e300;
+};
+inline Extent extent(const ruche::Region& region) {
+    Extent e;
+    for (const ruche::Polygon& polygon : region) {
+        for (const ruche::Vec2& p : polygon.outer) {
+            e.left = std::min(e.left, p.x());
+            e.right = std::max(e.right, p.x());
+            e.low = std::min(e.low, p.y());
+            e.high = std::max(e.high, p.y());
+        }
+    }
+    return e;
+}
+
+}  // namespace svg_text
