@@ -94,6 +94,10 @@ void check(const ModelInput& input) {
     for (const auto& field : fields<ModelOptions>()) {
         check(info(field), get(input.options, field), {.key = "model." + std::string(field.key)});
     }
+    if (input.options.log_extension >= std::min(input.material.gamma_1, input.material.gamma_2)) {
+        fail("model.log_extension", "is not below gamma_1 and gamma_2",
+             "The linear extension would begin at rest; the default is 1e-3.");
+    }
     for (const double s : input.prestretch) {
         if (!(s > 0.0) || !std::isfinite(s))
             fail("prestretch", "must be positive", "Length on the frame over relaxed length.");

@@ -245,6 +245,11 @@ TEST_CASE("model: an input without meaning is an error that names what is wrong"
         {"material.fabric_poissons_ratio", [](ModelInput& i) { i.material.fabric_poissons_ratio = 1.0; }},
         {"material.neo_hookean_share", [](ModelInput& i) { i.material.neo_hookean_share = 1.5; }},
         {"model.log_extension", [](ModelInput& i) { i.options.log_extension = 0.0; }},
+        {"model.log_extension",
+         [](ModelInput& i) {
+             i.material.gamma_2 = 0.01;
+             i.options.log_extension = 0.02;
+         }},
         {"prestretch", [](ModelInput& i) { i.prestretch[1] = 0.0; }},
         {"prestretch", [&](ModelInput& i) { i.prestretch[0] = nan; }},
         {"model", [&](ModelInput& i) { i.gravity[2] = nan; }},

@@ -110,6 +110,12 @@ std::vector<SetUp> set_ups() {
     });
     add("bare", [](ModelInput& input) { input.print.clear(); });
     add("all plastic", [](ModelInput& input) { input.print.assign(input.print.size(), {.front = 0.8}); });
+    // Two neighbours of each printed triangle then have the same opposite vertex.
+    add("a vertex of three printed triangles", [](ModelInput& input) {
+        input.mesh.vertices = {Vec2(0.0, 0.0), Vec2(2.0, 0.1), Vec2(0.9, 1.8), Vec2(0.9, 0.7)};
+        input.mesh.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+        input.print.assign(3, {.front = 0.6});
+    });
     add(
         "gravity, force and table",
         [](ModelInput& input) {
