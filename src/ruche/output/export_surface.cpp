@@ -95,7 +95,11 @@ ExportSurface layout_surface(const Result& result, const SurfaceFields& fields) 
 std::string result_title(const Result& result) {
     const PatternSource& pattern = result.scene.pattern;
     for (const std::string& file : {result.scene.file, pattern.svg, pattern.mesh}) {
-        const std::string stem = std::filesystem::path(file).stem().string();
+        const std::filesystem::path path(file);
+        // kite/scene.toml is about a kite.
+        const std::string stem = path.stem() == "scene" && path.has_parent_path()
+                                     ? path.parent_path().filename().string()
+                                     : path.stem().string();
         if (!stem.empty()) return stem;
     }
     return pattern.generator.empty() ? "untitled" : pattern.generator;
