@@ -1,6 +1,6 @@
 #include "ruche/cli/interrupt.hpp"
 
-#include <signal.h>
+#include <csignal>
 
 namespace ruche {
 

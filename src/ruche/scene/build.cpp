@@ -153,6 +153,7 @@ static std::vector<Support> model_supports(const Scene& scene, const TriangleMes
         }
     }
     std::vector<Support> all;
+    all.reserve(held.size());
     for (const auto& [vertex, support] : held) all.push_back(support);
     return all;
 }
