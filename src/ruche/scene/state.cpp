@@ -187,7 +187,7 @@ State read_state(const std::string& path) {
         if (!std::isfinite(unknown)) in.damaged();
     }
     state.iterations = in.number<int>();
-    if (state.x.size() < 3 * state.layout.vertex_count()) in.damaged();
+    if (state.x.size() < Eigen::Index{3} * state.layout.vertex_count()) in.damaged();
     return state;
 }
 
@@ -235,9 +235,13 @@ static bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
 
 /// The point of the mesh nearest to a point of the plane; null for an empty mesh.
 static std::optional<MeshPoint> nearest(const PointLocator& locator, const Vec2& point, double diameter) {
-    for (double reach = diameter / 256; reach < 2 * diameter; reach *= 2)
-        if (std::optional<MeshPoint> found = locator.find(point, reach)) return found;
-    return {};
+    double reach = diameter / 256;
+    std::optional<MeshPoint> found;
+    while (!found && reach < 2 * diameter) {
+        found = locator.find(point, reach);
+        reach *= 2;
+    }
+    return found;
 }
 
 /// Where the state takes a point of the plane: interpolated on its triangle; beyond the layout the sheet goes
@@ -247,7 +251,9 @@ static Vec3 carried(const State& state, const MeshPoint& on_mesh, const Vec2& po
     const auto flat = [&](std::size_t k) {
         return state.layout.vertices[static_cast<std::size_t>(corners[k])];
     };
-    const auto shape = [&](std::size_t k) -> Vec3 { return state.x.segment<3>(3 * corners[k]); };
+    const auto shape = [&](std::size_t k) -> Vec3 {
+        return state.x.segment<3>(Eigen::Index{3} * corners[k]);
+    };
     Mat2 edges;
     edges << flat(1) - flat(0), flat(2) - flat(0);
     const Vec2 weights = edges.inverse() * (point - flat(0));
@@ -268,7 +274,7 @@ Eigen::VectorXd start_from(const State& state, const TriangleMesh& layout, int s
     for (int v = 0; v < layout.vertex_count(); ++v) {
         const Vec2& vertex = layout.vertices[static_cast<std::size_t>(v)];
         if (const std::optional<MeshPoint> point = nearest(locator, vertex, (high - low).norm()))
-            x.segment<3>(3 * v) = carried(state, *point, vertex);
+            x.segment<3>(Eigen::Index{3} * v) = carried(state, *point, vertex);
     }
     return x;
 }
