@@ -91,15 +91,17 @@ TEST_CASE("strip: stays flat without pre-stretch") {
     CHECK(std::abs(strip_curvature(rectangle(MeshKind::jittered, 2, 0.6), input)) < 1e-9);
 }
 
-TEST_CASE(
-    "strip: rolled around its long axis or its short one, seeds find strict minima with positive Hessians") {
-    // 60 x 5 mm, 0.3 mm: the known case of two stable shapes; from the flat state the lower one is found.
+TEST_CASE("strip: a wide thin one takes the lower of its two stable shapes from every seed") {
+    // 60 x 5 mm, 0.3 mm: rolled along its length about 43.1 mJ, across its width 45.0 mJ.
     const PrintMesh layout =
-        printed(rectangle_mesh(MeshKind::alternating, {.length = 60.0, .width = 5.0, .across = 4}),
+        printed(rectangle_mesh(MeshKind::alternating, {.length = 60.0, .width = 5.0, .across = 5}),
                 [](const Vec2&) { return 0.3; });
-    for (const int seed : {1, 2, 3}) {
+    const Equilibrium first = release(layout, {}, {.seed = 1});
+    REQUIRE(certain(first));
+    CHECK(first.energy.total() < 44.0);
+    for (const int seed : {2, 3, 4, 5}) {
         const Equilibrium state = release(layout, {}, {.seed = seed});
         CHECK(certain(state));
-        CHECK(state.factorizations < 60);
+        CHECK(state.energy.total() == doctest::Approx(first.energy.total()).epsilon(1e-9));
     }
 }

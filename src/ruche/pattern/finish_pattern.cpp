@@ -15,7 +15,7 @@ namespace {
 
 constexpr double largest_shift = 0.02;        // mm, of a border by simplifying
 constexpr double shift_per_width = 0.01;      // of a strip's width
-constexpr double speck = 1e-6;                // mm^2: areas below are rounding, not worth a word
+constexpr double speck = snap_mm * snap_mm;   // mm^2: areas below are what snapping moves, not worth a word
 constexpr double fabric_arc_tolerance = 0.1;  // mm: chords of about 2 mm around a margin of 5 mm
 
 /// Collects what happened to many strips and says it in one sentence.

@@ -82,9 +82,7 @@ PrintMesh scene_mesh(const Scene& scene) {
     }
     const Pattern pattern = scene_pattern(scene);
     check_element_count(scene, pattern);
-    PrintMesh layout = mesh_pattern(pattern, scene.mesh);
-    layout.warnings.insert(layout.warnings.begin(), pattern.warnings.begin(), pattern.warnings.end());
-    return layout;
+    return mesh_pattern(pattern, scene.mesh);
 }
 
 static std::vector<int> vertices_in_box(const Selection& box, const TriangleMesh& mesh) {
@@ -176,19 +174,21 @@ static void check_held(const Scene& scene, const ModelInput& model) {
     const MeshPieces pieces = find_pieces(model.mesh);
     const auto count = static_cast<std::size_t>(pieces.count);
     std::vector<std::array<bool, 3>> held(count, {false, false, false});
-    std::vector<std::array<bool, 3>> pulled(
-        count, {model.gravity[0] != 0, model.gravity[1] != 0, model.gravity[2] != 0});
+    // What pulls a piece as a whole, and how hard it is pulled in all: balanced forces need no support.
+    std::vector<Vec3> net(count, Vec3(model.gravity[0], model.gravity[1], model.gravity[2]));
+    std::vector<double> gross(count, 0.0);
     const auto piece_of = [&](int vertex) { return pieces.of_vertex[static_cast<std::size_t>(vertex)]; };
     for (const Support& support : model.supports)
         if (const int piece = piece_of(support.vertex); piece >= 0)
             for (std::size_t k = 0; k < 3; ++k) held[static_cast<std::size_t>(piece)][k] |= support.fixed[k];
     for (const NodalForce& force : model.forces)
-        if (const int piece = piece_of(force.vertex); piece >= 0)
-            for (std::size_t k = 0; k < 3; ++k)
-                pulled[static_cast<std::size_t>(piece)][k] |= force.force[static_cast<int>(k)] != 0;
+        if (const int piece = piece_of(force.vertex); piece >= 0) {
+            net[static_cast<std::size_t>(piece)] += force.force;
+            gross[static_cast<std::size_t>(piece)] += force.force.norm();
+        }
     for (std::size_t piece = 0; piece < count; ++piece)
         for (std::size_t k = 0; k < 3; ++k)
-            if (pulled[piece][k] && !held[piece][k])
+            if (std::abs(net[piece][static_cast<int>(k)]) > 1e-12 * gross[piece] && !held[piece][k])
                 throw InputError(
                     place_in(scene, scene.supports.empty() ? "gravity.acceleration_mm_per_s2" : "support.1"),
                     fmt::format("piece {} of {} of the sheet is pulled along {} and held nowhere against it",

@@ -1,6 +1,7 @@
 #include "ruche/scene/simulate.hpp"
 
 #include <chrono>
+#include <memory>
 
 #include "ruche/core/parallel.hpp"
 #include "ruche/geometry/self_intersection.hpp"
@@ -35,28 +36,23 @@ Equilibrium solve_on(const Model& model, const SolveOptions& options, const Cont
 
 /// A sheet that rests on a table is released in free space first and then laid down: from the flat state,
 /// pressed on the table, it could not curl.
-Equilibrium release(const ModelInput& input, const SolveOptions& options, const Control& control,
+Equilibrium release(const Model& model, const SolveOptions& options, const Control& control,
                     const Eigen::VectorXd* start) {
-    if (!input.table.present) return solve(Model(input), options, control, start);
+    const ModelInput& input = model.input();
+    if (!input.table.present || start != nullptr) return solve(model, options, control, start);
+    ModelInput weightless = input;
+    weightless.gravity = {0, 0, 0};
+    weightless.table.present = false;
+    Equilibrium first = solve(Model(std::move(weightless)), options, control);
+    if (first.status != SolveStatus::converged) return first;
     const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
     const Vec3 up = gravity.norm() > 0.0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ();
-    Equilibrium first;
-    if (start != nullptr) {
-        first.x = *start;
-    } else {
-        ModelInput weightless = input;
-        weightless.gravity = {0, 0, 0};
-        weightless.table.present = false;
-        first = solve(Model(std::move(weightless)), options, control);
-        if (first.status != SolveStatus::converged) return first;
-        const auto vertices = static_cast<Eigen::Index>(input.mesh.vertices.size());
-        double lowest = infinity;
-        for (Eigen::Index v = 0; v < vertices; ++v)
-            lowest = std::min(lowest, up.dot(first.x.segment<3>(3 * v)));
-        for (Eigen::Index v = 0; v < vertices; ++v)
-            first.x.segment<3>(3 * v) += (input.table.height - lowest) * up;
-    }
-    return solve_on(Model(input), options, control, first);
+    double lowest = infinity;
+    for (int v = 0; v < model.vertex_count(); ++v)
+        lowest = std::min(lowest, up.dot(first.x.segment<3>(3 * v)));
+    for (int v = 0; v < model.vertex_count(); ++v)
+        first.x.segment<3>(3 * v) += (input.table.height - lowest) * up;
+    return solve_on(model, options, control, first);
 }
 
 }  // namespace
@@ -79,27 +75,28 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
                  std::to_string(input.mesh.triangle_count()) + " triangles, " +
                      std::to_string(input.mesh.vertex_count()) + " vertices"});
 
+    auto model = std::make_unique<Model>(input);
     Eigen::VectorXd from;
     if (start.state != nullptr) {
         from = start.resume ? resume_from(*start.state, scene, input, start.path)
-                            : start_from(*start.state, input.mesh, Model(input).size());
+                            : start_from(*start.state, input.mesh, model->size());
     }
-    result.equilibrium = release(input, scene.solver, control, from.size() > 0 ? &from : nullptr);
+    result.equilibrium = release(*model, scene.solver, control, from.size() > 0 ? &from : nullptr);
     if (result.equilibrium.health.beyond_law > 0 && input.options.log_extension > 1e-6 &&
         result.equilibrium.status == SolveStatus::converged) {
         // The shape leans on the law's linear extension: go on with the paper's much steeper one.
         input.options.log_extension = 1e-6;
-        result.equilibrium = solve_on(Model(input), scene.solver, control, result.equilibrium);
+        model = std::make_unique<Model>(input);
+        result.equilibrium = solve_on(*model, scene.solver, control, result.equilibrium);
         result.warnings.push_back(
             "the fabric is stretched into the limit of its law somewhere; the log extension was narrowed to "
             "1e-6");
     }
     result.seconds["release"] = watch.lap();
 
-    const Model model(input);
-    for (int v = 0; v < model.vertex_count(); ++v)
+    for (int v = 0; v < model->vertex_count(); ++v)
         result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
-    result.energy_density = model.energy_density(result.equilibrium.x);
+    result.energy_density = model->energy_density(result.equilibrium.x);
     result.equilibrium.health.self_intersections =
         static_cast<int>(find_self_intersections(result.shape, result.layout.mesh.triangles).size());
     if (result.equilibrium.health.self_intersections > 0) {

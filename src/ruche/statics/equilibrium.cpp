@@ -70,17 +70,29 @@ class Newton {
     /// model.
     static constexpr double turning = 0.05;
 
-    void evaluate(Order order) {
-        terms_ = model_.evaluate(x_, order, sums_);
-        mask_gradient();
-    }
-    void mask_gradient() {
+    void evaluate(Order order) { terms_ = evaluate(x_, order, sums_); }
+    /// As the model does, with the supports' reactions taken out of the gradient.
+    EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
+        const EnergyTerms terms = model_.evaluate(x, order, sums);
         for (int i = 0; i < model_.size(); ++i) {
-            if (held_[i]) sums_.gradient[i] = 0.0;
+            if (held_[i]) sums.gradient[i] = 0.0;
         }
+        return terms;
     }
     Order positive_order() const { return taut_ ? Order::gauss_newton_taut : Order::gauss_newton; }
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
+    /// Mean magnitude of the Hessian's diagonal, N/mm.
+    double mean_stiffness() const {
+        const NodePattern& pattern = model_.pattern();
+        double sum = 0.0;
+        for (int node = 0; node < pattern.node_count(); ++node) {
+            const int block = pattern.block_offset(node, node);
+            for (int c = 0; c < pattern.node_size(node); ++c) {
+                sum += std::abs(sums_.hessian[block + c * pattern.column_length(node) + c]);
+            }
+        }
+        return sum / model_.size();
+    }
     double energy_scale() const {
         return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
                std::abs(terms_.gravity);
@@ -150,9 +162,7 @@ bool Newton::solve_step(Order order) {
         ready = factorize(positive_order());
     }
     if (!ready) {
-        double mean = 0.0;
-        for (int n = 0; n < model_.size(); ++n)
-            mean += sums_.hessian[model_.pattern().column_start()[n]] / model_.size();
+        const double mean = mean_stiffness();
         for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
             ready = factorize(positive_order(), shift);
     }
@@ -170,11 +180,8 @@ bool Newton::line_search() {
         const Eigen::VectorXd candidate = retraction_(x_, step_, t);
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
-            const EnergyTerms terms = model_.evaluate(candidate, Order::gradient, trial_);
-            double after = 0.0;
-            for (int i = 0; i < model_.size(); ++i)
-                after = std::max(after, held_[i] ? 0.0 : std::abs(trial_.gradient[i]));
-            if (std::isfinite(terms.total()) && after < before) {
+            const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
+            if (std::isfinite(terms.total()) && trial_.gradient.cwiseAbs().maxCoeff() < before) {
                 x_ = candidate;
                 return true;
             }
@@ -192,9 +199,7 @@ bool Newton::line_search() {
 /// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
 /// iteration on a shifted matrix and moves along it to lower energy.
 bool Newton::leave_saddle() {
-    double mean = 0.0;
-    for (int n = 0; n < model_.size(); ++n)
-        mean += std::abs(sums_.hessian[model_.pattern().column_start()[n]]) / model_.size();
+    const double mean = mean_stiffness();
     bool ready = false;
     for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0)
         ready = factorize(Order::hessian, shift);
