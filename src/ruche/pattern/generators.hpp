@@ -46,7 +46,7 @@ struct RadialStripsOptions {
 GeneratedPattern generate_radial(const RadialStripsOptions& options);
 
 /// 3-pointed stars on the vertices of a hexagonal tiling, arms along its edges, on a disc of fabric (Jourdan
-/// et al. 2020). Arms that would leave the disc are shortened to end `rim` inside it.
+/// et al. 2020); those that fit on the disc.
 struct StarTilingOptions {
     double edge = 6.4;  ///< of the tiling = distance between neighbouring stars
     double arm = 2.9;

@@ -28,21 +28,6 @@ void check_disc(double radius, double edge) {
                      "Make radius_mm larger or edge_mm smaller.");
 }
 
-/// How far a butt-ended arm of the given half width can reach from `centre` along `direction` without a
-/// corner leaving the circle; negative when it begins outside.
-double reach_inside(const Vec2& centre, const Vec2& direction, double half_width, double radius) {
-    const Vec2 across(-direction.y(), direction.x());
-    double reach = infinity;
-    for (const double side : {1.0, -1.0}) {
-        const Vec2 from = centre + side * half_width * across;
-        const double b = from.dot(direction);
-        const double c = from.squaredNorm() - radius * radius;
-        if (c >= 0) return -1.0;
-        reach = std::min(reach, -b + std::sqrt(b * b - c));
-    }
-    return reach;
-}
-
 Polyline hexagon(const Vec2& centre, double edge) {
     Polyline corners;
     for (int k = 0; k < 6; ++k)
@@ -94,15 +79,17 @@ GeneratedPattern generate_stars(const StarTilingOptions& options) {
     const double limit = options.radius - options.rim;
     for (const TilingVertex& vertex : hexagon_vertices(options.edge, options.radius)) {
         DrawnStrip star{.id = fmt::format("star-{}", result.strips.size() + 1), .width = options.width};
+        bool fits = true;
         for (int k = 0; k < 3; ++k) {
             const double angle = vertex.first_angle + 2 * M_PI * k / 3;
             const Vec2 along(std::cos(angle), std::sin(angle));
-            const double reach =
-                std::min(options.arm, reach_inside(vertex.at, along, 0.5 * options.width, limit));
-            if (reach < options.width) break;  // a star with a stub for an arm is left out
-            star.lines.push_back({{vertex.at, vertex.at + reach * along}, false});
+            const Vec2 across(-along.y(), along.x());
+            const Vec2 tip = vertex.at + options.arm * along;
+            for (const double side : {0.5, -0.5})
+                fits = fits && (tip + side * options.width * across).norm() <= limit;
+            star.lines.push_back({{vertex.at, tip}, false});
         }
-        if (star.lines.size() == 3) result.strips.push_back(std::move(star));
+        if (fits) result.strips.push_back(std::move(star));
     }
     if (result.strips.empty()) nothing_fits(options.radius);
     result.fabric.push_back(circle_polygon(options.radius));

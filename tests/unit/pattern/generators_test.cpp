@@ -112,7 +112,8 @@ TEST_CASE("radial generator: strips that were inserted keep as far from the othe
 TEST_CASE("star generator: arms run along the tiling's edges towards the neighbours and do not touch") {
     const StarTilingOptions options;
     const GeneratedPattern p = generate_stars(options);
-    REQUIRE(p.strips.size() == 24);  // 6 at one edge, 6 at two, 12 at sqrt(7) edges from the centre
+    REQUIRE(p.strips.size() ==
+            12);  // 6 at one edge and 6 at two from the centre; those at sqrt(7) would leave the disc
     int facing = 0;
     for (const DrawnStrip& star : p.strips) {
         REQUIRE(star.lines.size() == 3);
@@ -125,7 +126,7 @@ TEST_CASE("star generator: arms run along the tiling's edges towards the neighbo
                 CHECK((arm.points[1] + side * across).norm() <= options.radius - options.rim + 1e-9);
         }
     }
-    CHECK(facing == 24 * 3 - 12);  // only the outermost twelve look outward
+    CHECK(facing == 12 * 3 - 6 * 2);  // each of the outer six has two arms that look outward
     CHECK((line_of(p.strips[0])[1] - line_of(p.strips[0])[0]).norm() == doctest::Approx(2.9));
     CHECK_THROWS_AS(generate_stars({.arm = 3.2}), InputError);
     CHECK_THROWS_AS(generate_stars({.width = 3}), InputError);
