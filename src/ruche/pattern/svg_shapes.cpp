@@ -227,8 +227,12 @@ class ShapeMaker {
             for (double& dash : pen.dashes) dash *= factor;
             pen.dash_offset *= factor;
         }
-        shape.stroked = pen_cover(lines, map, pen);
+        Covered covered = pen_cover(lines, map, pen);
+        shape.stroked = std::move(covered.region);
         if (shape.stroked.empty()) return;
+        if (covered.solid_instead) {
+            warn(item, fmt::format("has more than {} dashes and gaps: printed as a solid line", most_dashes));
+        }
         shape.stroke_colour = hex_colour(*item.stroke);
         shape.stroke_width = item.style.stroke_width * std::sqrt(std::abs(map.determinant()));
     }

@@ -13,7 +13,6 @@ namespace ruche::svg {
 namespace {
 
 constexpr double hair = 1e-6;  // mm, the grid of the polygon operations
-constexpr double most_dashes = 20000.0;
 
 /// Walks along a line and cuts it where the dash pattern changes.
 class Dasher {
@@ -188,11 +187,12 @@ PenSpace pen_space(const Mat2& map) {
 
 }  // namespace
 
-Lines dashed(const Polyline& line, bool closed, const std::vector<double>& dashes, double offset) {
+std::optional<Lines> dashed(const Polyline& line, bool closed, const std::vector<double>& dashes,
+                            double offset) {
     const double period = std::accumulate(dashes.begin(), dashes.end(), 0.0);
     const double count = length_of(line, closed) / period * static_cast<double>(dashes.size());
-    // Gaps finer than anything that can be printed: the strip is as good as solid.
-    if (line.size() < 2 || !(count <= most_dashes)) return {{line}, {closed}};
+    if (!(count <= most_dashes)) return std::nullopt;
+    if (line.size() < 2) return Lines{{line}, {closed}};
     Dasher dasher(dashes, offset);
     const bool began_on = dasher.on();
     for (std::size_t i = 1; i < line.size(); ++i) dasher.follow(line[i - 1], line[i]);
@@ -200,11 +200,11 @@ Lines dashed(const Polyline& line, bool closed, const std::vector<double>& dashe
     Lines pieces = dasher.finish(closed, began_on);
     const bool never_off = pieces.points.size() == 1 && began_on &&
                            length_of(pieces.points[0], false) >= length_of(line, closed) - hair;
-    if (never_off) return {{line}, {closed}};
+    if (never_off) return Lines{{line}, {closed}};
     return pieces;
 }
 
-Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
+Covered pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
     const Stretches factors = stretches(map);
     if (!(factors.smallest > 1e-6 * factors.largest)) return {};
     const PenSpace space = pen_space(map);
@@ -221,6 +221,7 @@ Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
     }
     std::sort(turns.begin(), turns.end(), before);
 
+    Covered covered;
     std::vector<Region> parts;
     for (std::size_t i = 0; i < lines.points.size(); ++i) {
         Polyline line = lines.points[i];
@@ -232,7 +233,12 @@ Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
             continue;
         }
         Lines pieces{{line}, {lines.closed[i]}};
-        if (!dashes.empty()) pieces = dashed(line, lines.closed[i], dashes, pen.dash_offset * space.scale);
+        if (!dashes.empty()) {
+            auto cut = dashed(line, lines.closed[i], dashes, pen.dash_offset * space.scale);
+            // Gaps finer than anything that can be printed: the strip is as good as solid.
+            covered.solid_instead = covered.solid_instead || !cut;
+            if (cut) pieces = std::move(*cut);
+        }
         for (std::size_t k = 0; k < pieces.points.size(); ++k) {
             const Polyline& piece = pieces.points[k];
             const bool is_dot = piece.size() == 2 && (piece[1] - piece[0]).norm() <= hair;
@@ -246,8 +252,9 @@ Region pen_cover(const Lines& lines, const Mat2& map, const SvgPen& pen) {
             }
         }
     }
-    Region covered = parts.size() == 1 ? std::move(parts.front()) : unite(parts);
-    return space.is_mm ? covered : mapped(covered, space.to_mm);
+    covered.region = parts.size() == 1 ? std::move(parts.front()) : unite(parts);
+    if (!space.is_mm) covered.region = mapped(covered.region, space.to_mm);
+    return covered;
 }
 
 }  // namespace ruche::svg

@@ -176,6 +176,25 @@ TEST_CASE("svg stroke: dashes cut the strip, their caps and offset count") {
     CHECK(stroked(d + "stroke-dasharray='1' pathLength='5'") == doctest::Approx(60.0).epsilon(1e-9));
 }
 
+TEST_CASE(
+    "svg stroke: more dashes than anyone prints are a solid line, and a warning with line and id says so") {
+    const auto dashed = [](const std::string& dashes) {
+        return svg_text::draw(
+            "<path id='fine' d='M 0 50 H 100' stroke='red' fill='none' stroke-width='1' "
+            "stroke-dasharray='" +
+            dashes + "'/>");
+    };
+    const std::string warning =
+        "drawing.svg:2: path 'fine': has more than 20000 dashes and gaps: printed as a solid";
+    const Drawing fine = dashed("0.0049");
+    CHECK(area(fine.shapes.at(0).stroked) == doctest::Approx(100.0).epsilon(1e-9));
+    CHECK(svg_text::warns(fine, warning));
+    CHECK(fine.warnings.size() == 1);
+    const Drawing coarse = dashed("0.0051");
+    CHECK(area(coarse.shapes.at(0).stroked) == doctest::Approx(50.0).epsilon(1e-3));
+    CHECK(coarse.warnings.empty());
+}
+
 TEST_CASE("svg stroke: the dash that runs over a closed line's start is joined there") {
     // Dashes of 20 from the middle of the top side: the corner at the start lies inside one.
     const Shape shape =
