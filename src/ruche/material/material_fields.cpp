@@ -8,8 +8,8 @@ std::span<const Field<Material>> fields<Material>() {
     static const Field<M> table[] = {
         {"fabric_thickness_mm", &M::fabric_thickness, "mm", 1e-3, 20,
          "Thickness of the relaxed fabric. Measure a stack of ten layers between two plates."},
-        {"fabric_areal_density_kg_per_m2", &M::fabric_areal_density, "kg/m^2", 1e-4, 20,
-         "Mass of the relaxed fabric per area. Only matters under gravity."},
+        {"fabric_areal_density_kg_per_m2", &M::fabric_areal_density, "kg/m^2", 0, 20,
+         "Mass of the relaxed fabric per area. Only matters under gravity; 0 has no weight."},
         {"alpha_1_mpa", &M::alpha_1, "MPa", 0, 1e5,
          "Linear stiffness of the fabric along its first axis (paper eq. 2)."},
         {"alpha_2_mpa", &M::alpha_2, "MPa", 0, 1e5,
@@ -36,8 +36,8 @@ std::span<const Field<Material>> fields<Material>() {
          "from collapsing to zero area."},
         {"plastic_youngs_modulus_mpa", &M::plastic_youngs_modulus, "MPa", 1e-3, 1e6,
          "Young's modulus of the printed plastic."},
-        {"plastic_density_kg_per_m3", &M::plastic_density, "kg/m^3", 1, 30000,
-         "Density of the printed plastic. Only matters under gravity."},
+        {"plastic_density_kg_per_m3", &M::plastic_density, "kg/m^3", 0, 30000,
+         "Density of the printed plastic. Only matters under gravity; 0 has no weight."},
         {"laminate_poissons_ratio", &M::laminate_poissons_ratio, "", -0.99, 0.99,
          "Common Poisson's ratio of the plies where plastic lies on fabric; the paper takes the mean of "
          "fabric and plastic."},

@@ -196,6 +196,24 @@ static void check_held(const Scene& scene, const ModelInput& model) {
                     "Support every connected piece of the fabric.");
 }
 
+/// A table holds by weight alone: every connected piece must have some.
+static void check_weight(const Scene& scene, const ModelInput& model) {
+    if (!model.table.present || scene.material.fabric_areal_density > 0.0) return;
+    const MeshPieces pieces = find_pieces(model.mesh);
+    std::vector<bool> heavy(static_cast<std::size_t>(pieces.count), false);
+    for (std::size_t t = 0; t < model.print.size(); ++t)
+        if (const int piece = pieces.of_vertex[static_cast<std::size_t>(model.mesh.triangles[t][0])];
+            piece >= 0 && !model.print[t].bare() && scene.material.plastic_density > 0.0)
+            heavy[static_cast<std::size_t>(piece)] = true;
+    const auto light = std::ranges::find(heavy, false);
+    if (light == heavy.end()) return;
+    throw InputError(
+        place_in(scene, "gravity.table"),
+        fmt::format("piece {} of {} of the sheet has no weight: the table does not hold it",
+                    light - heavy.begin() + 1, pieces.count),
+        "Give material.fabric_areal_density_kg_per_m2, or hold the sheet by a [[support]] instead.");
+}
+
 ModelInput scene_model(const Scene& scene, const PrintMesh& layout) {
     ModelInput model{.mesh = layout.mesh,
                      .print = layout.print,
@@ -208,6 +226,7 @@ ModelInput scene_model(const Scene& scene, const PrintMesh& layout) {
                      .table = {.present = scene.gravity.table, .height = scene.gravity.table_height_mm},
                      .options = scene.model};
     check_held(scene, model);
+    check_weight(scene, model);
     return model;
 }
 

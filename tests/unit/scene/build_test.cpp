@@ -79,6 +79,29 @@ TEST_CASE("scene_model: every piece must be held against what pulls it") {
     CHECK(scene_model(with(down + "table = true\n"), two_squares(3)).table.present);
 }
 
+TEST_CASE("scene_model: what has no weight does not rest on a table, but may be held") {
+    const std::string weightless =
+        "[material]\nfabric_areal_density_kg_per_m2 = 0\nplastic_density_kg_per_m3 = 0\n";
+    const std::string light_fabric = "[material]\nfabric_areal_density_kg_per_m2 = 0\n";
+    const std::string light_plastic = "[material]\nplastic_density_kg_per_m3 = 0\n";
+    const std::string table = down + "table = true\n";
+    PrintMesh layout = two_squares(3);
+    layout.print[0].front = layout.print[1].back = 0.6;  // the first piece alone
+    CHECK_THROWS_WITH_AS(
+        scene_model(with(table + weightless), layout),
+        doctest::Contains("k.toml:4: gravity.table: piece 1 of 2 of the sheet has no weight"), InputError);
+    CHECK_THROWS_WITH_AS(scene_model(with(table + light_fabric), layout), doctest::Contains("piece 2 of 2"),
+                         InputError);
+    layout.print[3].front = 0.6;
+    CHECK(scene_model(with(table + light_fabric), layout).table.present);
+    CHECK(scene_model(with(table + light_plastic), two_squares(3)).table.present);
+    const std::string held = "[[support]]\nmin_mm = [0, 0]\nmax_mm = [9, 0]\n" + down + weightless;
+    CHECK(Model(scene_model(with(held), two_squares(3))).size() > 0);
+    for (const char* key : {"fabric_areal_density_kg_per_m2", "plastic_density_kg_per_m3"})
+        CHECK_THROWS_WITH_AS(with("[material]\n" + std::string(key) + " = -1e-9\n"),
+                             doctest::Contains("-1e-09 is outside [0, "), InputError);
+}
+
 TEST_CASE("scene_mesh: a generated strip is meshed with its thickness, side and fabric") {
     const Scene scene = parse_scene(
         "[pattern]\ngenerator = \"strip\"\n[pattern.options]\nlength_mm = 10\nwidth_mm = "
