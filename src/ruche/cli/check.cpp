@@ -84,7 +84,7 @@ static ExitCode check(const SceneArguments& arguments) {
     const ModelInput model = scene_model(scene, layout);
     print_scene(scene);
     print_layout(layout, model);
-    print_list("assumed:", assumptions(scene));
+    print_list("assumed:", assumptions(scene, layout));
     std::vector<std::string> warnings = scene.warnings;
     warnings.insert(warnings.end(), layout.warnings.begin(), layout.warnings.end());
     print_list("warnings:", warnings);

@@ -249,6 +249,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     for (const int t : order) covers.push_back(cover_of(covered[triangulation.piece[t]], pattern.strips));
     set_print(result, covers, pattern.strips);
     result.strips = meshed_strips(pattern, options, result.mesh, covers);
+    result.outline_layer = pattern.outline_layer;
     result.warnings = pattern.warnings;
     warn_about_size(result, expected);
     const int pieces = find_pieces(result.mesh).count;

@@ -42,6 +42,7 @@ struct PrintMesh {
     std::vector<int>
         strip;  ///< per triangle: index into `strips` of the strip on it (the thickest), -1 = bare
     std::vector<MeshedStrip> strips;
+    std::string outline_layer;  ///< as in Pattern
     std::vector<std::string> warnings;
 };
 

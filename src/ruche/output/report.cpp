@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "ruche/output/metrics.hpp"
@@ -106,13 +107,42 @@ Json state_of(const Equilibrium& equilibrium) {
     return json;
 }
 
-Json health_of(const Health& health) {
+/// Where the sheet passes through itself: at most `most` places, spread over all pairs of triangles.
+Json places_of(const Result& result) {
+    constexpr std::size_t most = 20;
+    const std::vector<Intersection>& all = result.self_intersections;
+    const std::size_t count = std::min(all.size(), most);
+    Json json = Json::array();
+    for (std::size_t i = 0; i < count; ++i) {
+        const Intersection& at = all[i * all.size() / count];
+        Json layout = Json::array();
+        Json strips = Json::array();
+        for (const int t : at.triangles) {
+            const Triangle& tri = result.layout.mesh.triangles[static_cast<std::size_t>(t)];
+            Vec2 centre = Vec2::Zero();
+            for (const int v : tri) centre += result.layout.mesh.vertices[static_cast<std::size_t>(v)] / 3.0;
+            layout.push_back({centre.x(), centre.y()});
+            const int strip = result.layout.strip[static_cast<std::size_t>(t)];
+            strips.push_back(strip < 0 ? Json()
+                                       : Json(result.layout.strips[static_cast<std::size_t>(strip)].id));
+        }
+        json.push_back({{"place_mm", to_json(at.place)},
+                        {"triangles", at.triangles},
+                        {"layout_mm", layout},
+                        {"strips", strips}});
+    }
+    return json;
+}
+
+Json health_of(const Result& result) {
+    const Health& health = result.equilibrium.health;
     return {{"max_strain_margin", health.max_strain_margin},
             {"min_area_ratio", health.min_area_ratio},
             {"max_dihedral_deg", health.max_dihedral_deg},
             {"max_edge_rotation_deg", health.max_edge_rotation_deg},
             {"elements_beyond_law", health.beyond_law},
-            {"self_intersections", health.self_intersections}};
+            {"self_intersections", health.self_intersections},
+            {"self_intersection_places", places_of(result)}};
 }
 
 Json strips_of(const Result& result) {
@@ -149,7 +179,7 @@ std::string report_json(const Result& result) {
     json["solver"] = {{"iterations", equilibrium.iterations},
                       {"factorizations", equilibrium.factorizations},
                       {"seconds", equilibrium.seconds}};
-    json["health"] = health_of(equilibrium.health);
+    json["health"] = health_of(result);
     json["shape"] = shape_of(result);
     json["strips"] = strips_of(result);
     json["assumptions"] = result.assumptions;

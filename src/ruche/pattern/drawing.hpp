@@ -11,7 +11,7 @@ namespace ruche {
 /// the printed side.
 struct Shape {
     std::string id;     ///< unique: the element's id, else its label, else "path-7" by order (see read_svg)
-    std::string label;  ///< the user's name for it: Inkscape's label, Illustrator's data-name
+    std::string label;  ///< the user's name for it: Inkscape's label, Illustrator's data-name or escaped id
     std::string layer;  ///< name of the innermost Inkscape layer, else of the innermost group with a name
     std::vector<std::string> groups;   ///< labels and ids of all groups and layers around it, innermost first
     std::vector<std::string> classes;  ///< CSS classes

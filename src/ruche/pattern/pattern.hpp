@@ -28,6 +28,7 @@ struct Strip {
 /// borders that meet share their points exactly, points are at least `snap_mm` apart and from other borders.
 struct Pattern {
     Region fabric;
+    std::string outline_layer;  ///< the layer whose name alone made it the fabric's outline; else empty
     std::vector<Strip> strips;
     std::vector<std::string> warnings;
     double border_shift = 0.0;  ///< largest distance by which simplifying moved a printed border, mm
@@ -40,7 +41,9 @@ inline constexpr double snap_mm = 0.005;
 inline constexpr double narrowest_feature_mm = 0.1;
 
 /// Which drawn things mean what. `match` is compared with a shape's colours ("#ff0000", or a CSS name),
-/// layer, class, id and label; the first rule that matches wins.
+/// class, id and label, and with the names (labels, ids) of the layers and groups around it. The rule that
+/// matches nearest wins: the shape itself before the innermost group, that before the next one outwards; of
+/// several at one place the first.
 struct PrintRule {
     std::string match;
     enum class Role { strip, fabric_outline, ignore } role = Role::strip;
@@ -53,10 +56,13 @@ struct PrintRules {
     std::vector<PrintRule> rules;
     double thickness = 0.6;  ///< of shapes that no rule matches, mm
     Side side = Side::front;
-    bool fabric_from_outline = false;  ///< fabric_layer names shapes that bound the fabric; else a margin
-    std::string fabric_layer;          ///< match text of the fabric outline's shapes
-    double margin = 5.0;               ///< fabric beyond the print, mm; 0 = cut at the print's edge
-    bool bare = false;  ///< nothing is printed, on purpose: shapes only say where the fabric is
+    /// fabric_layer names shapes that bound the fabric; it goes before every rule. Else, unless a rule says
+    /// what the outline is, a layer or group "fabric" (in any case of letters) whose shapes no rule matches
+    /// bounds it; else a margin.
+    bool fabric_from_outline = false;
+    std::string fabric_layer;  ///< match text of the fabric outline's shapes
+    double margin = 5.0;       ///< fabric beyond the print, mm; 0 = cut at the print's edge
+    bool bare = false;         ///< nothing is printed, on purpose: shapes only say where the fabric is
 };
 
 /// Applies the rules and finishes the pattern. A fabric outline is made of closed curves, nested ones are

@@ -1,6 +1,7 @@
 #include "ruche/pattern/svg_elements.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <iterator>
 
 #include "ruche/pattern/svg_geometry.hpp"
@@ -49,9 +50,33 @@ std::optional<Colour> plain_gradient(const SvgFile& file, const pugi::xml_node& 
     return common;
 }
 
+/// Illustrator writes what may not stand in an id as "_x5F_", the character's number; the rest stays.
+static std::string unescaped(std::string_view id) {
+    std::string name;
+    while (!id.empty()) {
+        unsigned code = 0;
+        const char* end = id.data() + id.size();
+        if (id.starts_with("_x")) {
+            const auto [stop, error] = std::from_chars(id.data() + 2, end, code, 16);
+            if (error == std::errc() && stop != end && *stop == '_' && code >= 0x20U && code < 0x7FU) {
+                name += static_cast<char>(code);
+                id.remove_prefix(static_cast<std::size_t>(stop - id.data()) + 1);
+                continue;
+            }
+        }
+        name += id.front();
+        id.remove_prefix(1);
+    }
+    return name;
+}
+
 std::string label_of(const pugi::xml_node& node) {
-    std::string label = node.attribute("inkscape:label").value();
-    return label.empty() ? std::string(node.attribute("data-name").value()) : label;
+    for (const char* attribute : {"inkscape:label", "data-name"}) {
+        if (const std::string label = node.attribute(attribute).value(); !label.empty()) return label;
+    }
+    const std::string id = node.attribute("id").value();
+    std::string name = unescaped(id);
+    return name == id ? std::string() : name;
 }
 
 }  // namespace ruche::svg

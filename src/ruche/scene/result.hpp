@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ruche/geometry/self_intersection.hpp"
 #include "ruche/meshing/print_mesh.hpp"
 #include "ruche/scene/scene.hpp"
 #include "ruche/statics/equilibrium.hpp"
@@ -17,6 +18,7 @@ struct Result {
     std::vector<Vec3> shape;             ///< one position per vertex, mm
     std::vector<double> energy_density;  ///< elastic energy per triangle, mJ/mm^2 of layout
     Equilibrium equilibrium;
+    std::vector<Intersection> self_intersections;  ///< all pairs of triangles that pass through each other
     std::vector<std::string>
         assumptions;  ///< "fabric_thickness = 0.46 mm: not in the paper, implied by k_B", ...
     std::vector<std::string> warnings;

@@ -30,7 +30,7 @@ static std::string default_text(const Section& section, const std::string& name,
     return {};
 }
 
-std::vector<std::string> assumptions(const Scene& scene) {
+std::vector<std::string> assumptions(const Scene& scene, const PrintMesh& layout) {
     std::vector<std::string> texts;
     const auto add = [&](const auto& section, const std::string& name, std::string_view key) {
         if (!scene.sources.contains(name + "." + std::string(key)))
@@ -40,7 +40,12 @@ std::vector<std::string> assumptions(const Scene& scene) {
     add(scene.fabric, "fabric", "prestretch");
     add(scene.fabric, "fabric", "axis_deg");
     const bool drawn = scene.pattern.mesh.empty();
-    if (drawn && scene.fabric.outline.empty()) add(scene.fabric, "fabric", "margin_mm");
+    if (!layout.outline_layer.empty())
+        texts.push_back(
+            fmt::format("fabric.outline = the drawing's layer \"{}\" (not given, taken for its name)",
+                        layout.outline_layer));
+    else if (drawn && scene.fabric.outline.empty())
+        add(scene.fabric, "fabric", "margin_mm");
     if (drawn && !scene.plastic.none) {
         add(scene.plastic, "plastic", "thickness_mm");
         add(scene.plastic, "plastic", "side");

@@ -32,7 +32,7 @@ struct FabricOptions {
     std::array<double, 2> prestretch = {1.7, 1.7};
     double axis_deg = 0.0;
     double margin_mm = 5.0;
-    std::string outline;  ///< layer, colour, class or id of the shapes that bound the fabric
+    std::string outline;  ///< layer, colour, class or id of the shapes that bound the fabric; see PrintRules
 };
 
 /// [plastic], or plastic = "none"
@@ -143,7 +143,7 @@ std::string resolved_path(const Scene& scene, const std::string& path);
 std::string scene_name(const Scene& scene);
 
 /// What a reader of the result must know was not given: values whose source is assumed, and those that
-/// matter most and were left at their default. A sentence each, with units.
-std::vector<std::string> assumptions(const Scene& scene);
+/// matter most and were left at their default or found in the drawing. A sentence each, with units.
+std::vector<std::string> assumptions(const Scene& scene, const PrintMesh& layout);
 
 }  // namespace ruche

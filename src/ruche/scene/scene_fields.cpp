@@ -37,8 +37,10 @@ std::span<const Field<FabricOptions>> fields<FabricOptions>() {
         {"margin_mm", &F::margin_mm, "mm", 0, far_away,
          "Fabric that is left around the print, where no outline is drawn. 0 cuts it along the print."},
         {"outline", &F::outline, "", -infinity, infinity,
-         "Layer, colour, class or id of the shapes that bound the fabric; empty for a margin around the "
-         "print."},
+         "Layer, group, colour, class or id of the shapes that bound the fabric, holes included. Where it is "
+         "not given, a layer or group named \"fabric\" (also \"Fabric\", \"FABRIC\") bounds it; else the "
+         "fabric "
+         "is the print with a margin around it."},
     };
     return table;
 }
@@ -61,9 +63,10 @@ std::span<const Field<PrintRule>> fields<PrintRule>() {
     static constexpr std::string_view roles[] = {"strip", "fabric_outline", "ignore"};
     static const Field<R> table[] = {
         {"match", &R::match, "", -infinity, infinity,
-         "Colour (\"#ff0000\" or a name), layer, class, id or label of the drawn shapes that this rule is "
-         "for. "
-         "The first rule that matches a shape wins."},
+         "Colour (\"#ff0000\" or a name), class, id or label of the drawn shapes that this rule is for, or "
+         "the "
+         "name of a layer or group around them. The nearest match wins: the shape's own before that of the "
+         "innermost group, and so on outwards; of several at one place the first rule."},
         {"role", choice<&R::role>(roles), "", -infinity, infinity,
          "What these shapes are: printed strips, the fabric's outline, or nothing."},
         {"thickness_mm", &R::thickness, "mm", 0.001, 50,

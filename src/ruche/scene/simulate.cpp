@@ -1,10 +1,11 @@
 #include "ruche/scene/simulate.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <memory>
 
 #include "ruche/core/parallel.hpp"
-#include "ruche/geometry/self_intersection.hpp"
 #include "ruche/scene/build.hpp"
 #include "ruche/scene/check_scene.hpp"
 
@@ -55,6 +56,21 @@ Equilibrium release(const Model& model, const SolveOptions& options, const Contr
     return solve_on(model, options, control, first);
 }
 
+/// "strip 'a'", or "bare fabric".
+std::string carrier(const PrintMesh& layout, int triangle) {
+    const int strip = layout.strip[static_cast<std::size_t>(triangle)];
+    return strip < 0 ? "bare fabric" : "strip '" + layout.strips[static_cast<std::size_t>(strip)].id + "'";
+}
+
+std::string self_intersection_warning(const Result& result) {
+    const Intersection& first = result.self_intersections.front();
+    return fmt::format(
+        "the sheet passes through itself at {} pairs of triangles, contact is not simulated: first at "
+        "({:.4g}, {:.4g}, {:.4g}) mm, {} through {}; more places are in the report's health",
+        result.self_intersections.size(), first.place.x(), first.place.y(), first.place.z(),
+        carrier(result.layout, first.triangles[0]), carrier(result.layout, first.triangles[1]));
+}
+
 }  // namespace
 
 Result simulate(const Scene& scene, const Control& control, const Start& start) {
@@ -97,14 +113,10 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
     for (int v = 0; v < model->vertex_count(); ++v)
         result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
     result.energy_density = model->energy_density(result.equilibrium.x);
-    result.equilibrium.health.self_intersections =
-        static_cast<int>(find_self_intersections(result.shape, result.layout.mesh.triangles).size());
-    if (result.equilibrium.health.self_intersections > 0) {
-        result.warnings.push_back("the sheet passes through itself at " +
-                                  std::to_string(result.equilibrium.health.self_intersections) +
-                                  " pairs of triangles: contact is not simulated");
-    }
-    result.assumptions = assumptions(scene);
+    result.self_intersections = find_self_intersections(result.shape, result.layout.mesh.triangles);
+    result.equilibrium.health.self_intersections = static_cast<int>(result.self_intersections.size());
+    if (!result.self_intersections.empty()) result.warnings.push_back(self_intersection_warning(result));
+    result.assumptions = assumptions(scene, result.layout);
     result.seconds["check"] = watch.lap();
     return result;
 }

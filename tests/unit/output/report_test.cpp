@@ -67,6 +67,25 @@ TEST_CASE("report: it has every key that others rely on") {
     CHECK(json["version"].get<std::string>().size() > 2);
 }
 
+TEST_CASE("report: it says where the sheet passes through itself, at no more than 20 places") {
+    Result result = small_result();
+    CHECK(Json::parse(report_json(result))["health"]["self_intersection_places"] == Json::array());
+    result.self_intersections = {{{0, 1}, Vec3(1, 2, 3)}};
+    const Json one = Json::parse(report_json(result))["health"]["self_intersection_places"];
+    REQUIRE(one.size() == 1);
+    CHECK(one[0]["place_mm"] == Json({1.0, 2.0, 3.0}));
+    CHECK(one[0]["triangles"] == Json({0, 1}));
+    CHECK(one[0]["strips"] == Json({"strip-1", nullptr}));
+    // The centroids of the two halves of the square of 10 mm.
+    CHECK(one[0]["layout_mm"][0][0] == doctest::Approx(20.0 / 3));
+    CHECK(one[0]["layout_mm"][1][1] == doctest::Approx(20.0 / 3));
+    for (int i = 0; i < 99; ++i) result.self_intersections.push_back({{0, 1}, Vec3(i, 0, 0)});
+    const Json many = Json::parse(report_json(result))["health"]["self_intersection_places"];
+    REQUIRE(many.size() == 20);
+    CHECK(many[0]["place_mm"][0] == 1.0);
+    CHECK(many[19]["place_mm"][0] == 94.0);  // of the 100 pairs, the one numbered 95
+}
+
 TEST_CASE("report: the status has the three pinned names") {
     Result result = small_result();
     result.equilibrium.status = SolveStatus::not_converged;

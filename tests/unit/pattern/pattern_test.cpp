@@ -98,6 +98,87 @@ TEST_CASE(
     CHECK(pattern.strips[4].thickness == 1.6);
 }
 
+TEST_CASE("pattern: rules match the groups around a shape, and the nearest match wins") {
+    Shape shape = stroked("one", level, 1.0, false, "#ff0000");
+    shape.groups = {"thin ones", "g12", "Front", "layer1"};
+    shape.layer = "Front";
+    const auto thickness = [&](std::vector<PrintRule> rules) {
+        return make_pattern(drawing({shape}), {.rules = std::move(rules), .thickness = 0.1})
+            .strips.at(0)
+            .thickness;
+    };
+    const PrintRule layer{.match = "Front", .thickness = 1.0};
+    const PrintRule layer_id{.match = "#layer1", .thickness = 2.0};
+    const PrintRule group{.match = "thin ones", .thickness = 3.0};
+    const PrintRule group_id{.match = "g12", .thickness = 4.0};
+    const PrintRule colour{.match = "red", .thickness = 5.0};
+    const PrintRule id{.match = "#one", .thickness = 6.0};
+    CHECK(thickness({layer}) == 1.0);
+    CHECK(thickness({layer_id}) == 2.0);
+    CHECK(thickness({group_id}) == 4.0);
+    CHECK(thickness({layer, group_id}) == 4.0);
+    CHECK(thickness({layer_id, layer, group}) == 3.0);
+    CHECK(thickness({layer, group, colour}) == 5.0);
+    CHECK(thickness({layer, colour, id}) == 5.0);
+    CHECK(thickness({layer, id, colour}) == 6.0);
+    CHECK(thickness({{.match = "front", .thickness = 7.0}}) == 0.1);
+    const PrintRule ignored{.match = "g12", .role = PrintRule::Role::ignore};
+    CHECK(says(error_of([&] { thickness({layer, ignored}); }), "nothing is printed"));
+}
+
+TEST_CASE("pattern: a layer or group named fabric bounds the fabric when nobody says what does") {
+    const auto outlined = [](const std::string& name, const PrintRules& rules) {
+        Shape edge = stroked("edge", box(-5, -5, 15, 5), 0.2, true);
+        Shape hole = stroked("hole", box(0, 2, 2, 4), 0.2, true);
+        for (Shape* shape : {&edge, &hole}) {
+            shape->groups = {"g1", name, "svg1"};
+            shape->layer = name;
+        }
+        return make_pattern(drawing({edge, hole, stroked("a", level, 1.0)}), rules);
+    };
+    for (const char* name : {"fabric", "Fabric", "FABRIC", "Kite::Fabric", "Fabric_1_", "fabric_23_"}) {
+        CAPTURE(std::string(name));
+        const Pattern pattern = outlined(name, {});
+        CHECK(area(pattern.fabric) == doctest::Approx(200.0 - 4.0).epsilon(1e-12));
+        CHECK(pattern.strips.size() == 1);
+        CHECK(pattern.outline_layer == name);
+    }
+    for (const char* name : {"outline", "fabrics", "my fabric", "fabric_", "_1_", "", "fabric__"}) {
+        CAPTURE(std::string(name));
+        const Pattern pattern = outlined(name, {});
+        CHECK(pattern.strips.size() == 3);
+        CHECK(pattern.outline_layer.empty());
+    }
+    // Who says what the outline is, or what the layer is, is not second-guessed.
+    CHECK(
+        outlined("fabric", {.rules = {{.match = "fabric", .role = PrintRule::Role::strip}}}).strips.size() ==
+        3);
+    CHECK(
+        outlined("fabric", {.rules = {{.match = "fabric", .role = PrintRule::Role::ignore}}}).strips.size() ==
+        1);
+    const Pattern by_rule =
+        outlined("fabric", {.rules = {{.match = "edge", .role = PrintRule::Role::fabric_outline}}});
+    CHECK(by_rule.outline_layer.empty());
+    CHECK(area(by_rule.fabric) == doctest::Approx(200.0).epsilon(1e-12));
+    const Pattern by_name = outlined("fabric", {.fabric_from_outline = true, .fabric_layer = "edge"});
+    CHECK(by_name.outline_layer.empty());
+    CHECK(area(by_name.fabric) == doctest::Approx(200.0).epsilon(1e-12));
+}
+
+TEST_CASE("pattern: a mistake in a layer that is the outline for its name alone says so") {
+    Shape open = stroked("open", {Vec2(0, -5), Vec2(20, -5), Vec2(20, 5)}, 0.1);
+    open.layer = "Fabric";
+    open.groups = {"Fabric"};
+    const std::string not_closed = error_of([&] {
+        make_pattern(drawing({open, stroked("a", level, 1.0)}), {});
+    });
+    CHECK(says(not_closed, "not closed"));
+    CHECK(says(not_closed, "Layer 'Fabric' is taken as the fabric's outline for its name"));
+    Shape closed = stroked("closed", box(0, 0, 9, 9), 0.1, true);
+    closed.layer = "Fabric";
+    CHECK(says(error_of([&] { make_pattern(drawing({closed}), {}); }), "Layer 'Fabric' is taken"));
+}
+
 TEST_CASE("pattern: overlapping strips of one side are united, the thickest wins and a warning says so") {
     const Pattern pattern =
         make_pattern(drawing({stroked("thin", level, 1.0), stroked("thick", upright, 2.0)}),

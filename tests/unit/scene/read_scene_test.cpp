@@ -55,13 +55,16 @@ TEST_CASE("scene: material values replace the card's and say where they are from
 
 TEST_CASE("scene: what was assumed is said with units") {
     const std::vector<std::string> texts =
-        assumptions(parse_scene(drawn + "[plastic]\nthickness_mm = 1", "k"));
+        assumptions(parse_scene(drawn + "[plastic]\nthickness_mm = 1", "k"), {});
     REQUIRE(texts.size() == 8);
     CHECK(texts[0] == "fabric.card = spandex-tpu95a (not given)");
     CHECK(texts[1] == "fabric.prestretch = [1.7, 1.7] (not given)");
     CHECK(texts[3] == "fabric.margin = 5 mm (not given)");
     CHECK(texts[4] == "plastic.side = front (not given)");
     CHECK(texts[5].starts_with("fabric_thickness = 0.46 mm (assumed"));
+    const std::vector<std::string> found = assumptions(parse_scene(drawn, "k"), {.outline_layer = "Fabric"});
+    CHECK(found[3] == "fabric.outline = the drawing's layer \"Fabric\" (not given, taken for its name)");
+    CHECK(found[4] == "plastic.thickness = 0.6 mm (not given)");
 }
 
 TEST_CASE("scene: supports are a box or a point, forces as well") {
