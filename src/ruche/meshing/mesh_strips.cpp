@@ -5,36 +5,49 @@
 #include <map>
 
 #include "ruche/geometry/polyline.hpp"
+#include "ruche/meshing/branched_midlines.hpp"
 #include "ruche/meshing/point_locator.hpp"
 #include "ruche/pattern/centreline.hpp"
 
 namespace ruche {
 namespace {
 
-/// Numbers the components of equal print; -1 on bare fabric.
-int number_components(PrintMesh& layout, const MeshEdges& edges) {
+/// Numbers the strips; -1 on bare fabric. Returns the number that the file gave to each, -1 for none.
+std::vector<int> number_strips(PrintMesh& layout, const MeshEdges& edges, const std::vector<int>& given) {
     const int count = layout.mesh.triangle_count();
+    const auto given_to = [&](int t) {
+        return given.empty() || layout.print[t].bare() ? -1 : given[static_cast<std::size_t>(t)];
+    };
+    std::map<int, int> by_given;
+    for (int t = 0; t < count; ++t)
+        if (given_to(t) >= 0) by_given[given_to(t)] = 0;
+    std::vector<int> own;
+    for (auto& [number, strip] : by_given) {
+        strip = static_cast<int>(own.size());
+        own.push_back(number);
+    }
     layout.strip.assign(count, -1);
-    int components = 0;
     std::vector<int> open;
     for (int seed = 0; seed < count; ++seed) {
+        if (given_to(seed) >= 0) layout.strip[seed] = by_given[given_to(seed)];
         if (layout.strip[seed] >= 0 || layout.print[seed].bare()) continue;
-        layout.strip[seed] = components;
+        layout.strip[seed] = static_cast<int>(own.size());
         open.push_back(seed);
         while (!open.empty()) {
             const int t = open.back();
             open.pop_back();
             for (const int e : edges.of_triangle[t]) {
                 for (const int u : edges.edges[e].triangle) {
-                    if (u < 0 || layout.strip[u] >= 0 || !(layout.print[u] == layout.print[seed])) continue;
-                    layout.strip[u] = components;
+                    if (u < 0 || layout.strip[u] >= 0 || given_to(u) >= 0) continue;
+                    if (!(layout.print[u] == layout.print[seed])) continue;
+                    layout.strip[u] = static_cast<int>(own.size());
                     open.push_back(u);
                 }
             }
         }
-        ++components;
+        own.push_back(-1);
     }
-    return components;
+    return own;
 }
 
 /// The borders of every component as closed chains of points, the printed side on their left.
@@ -82,12 +95,13 @@ std::vector<double> element_sizes(const PrintMesh& layout, const MeshEdges& edge
 
 }  // namespace
 
-void find_strips(PrintMesh& layout) {
+void find_strips(PrintMesh& layout, const std::vector<int>& number, const std::map<int, std::string>& names) {
     const MeshEdges edges = find_edges(layout.mesh);
-    const int components = number_components(layout, edges);
-    const std::vector<std::vector<Polyline>> loops = border_loops(layout, edges, components);
-    const std::vector<double> sizes = element_sizes(layout, edges, components);
-    layout.strips.assign(components, {});
+    const std::vector<int> given = number_strips(layout, edges, number);
+    const int count = static_cast<int>(given.size());
+    const std::vector<std::vector<Polyline>> loops = border_loops(layout, edges, count);
+    const std::vector<double> sizes = element_sizes(layout, edges, count);
+    layout.strips.assign(count, {});
     for (int t = layout.mesh.triangle_count() - 1; t >= 0; --t) {
         if (layout.strip[t] < 0) continue;
         MeshedStrip& strip = layout.strips[layout.strip[t]];
@@ -96,12 +110,15 @@ void find_strips(PrintMesh& layout) {
         strip.thickness = std::max(print.front, print.back);
     }
     const PointLocator locator(layout.mesh);
-    for (int c = 0; c < components; ++c) {
+    for (int c = 0; c < count; ++c) {
         MeshedStrip& strip = layout.strips[c];
-        strip.id = "strip-" + std::to_string(c + 1);
+        const auto name = names.find(given[c]);
+        strip.id = given[c] >= 0 && name != names.end() ? name->second : "strip-" + std::to_string(c + 1);
         const Region region = region_from_loops(loops[c], FillRule::nonzero);
         for (const Polygon& polygon : region) {
-            for (const Polyline& line : cut_to_region({midline(polygon)}, {polygon})) {
+            std::vector<Polyline> middle = branched_midlines(polygon);
+            if (middle.empty()) middle.push_back(midline(polygon));
+            for (const Polyline& line : cut_to_region(middle, {polygon})) {
                 const double steps = std::ceil(2.0 * length(line) / std::max(sizes[c], 1e-9));
                 if (!(steps >= 1.0 && steps < 1e7)) continue;
                 std::vector<MeshPoint> points;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <map>
 #include <optional>
 
 #include "ruche/core/document.hpp"
@@ -47,6 +48,7 @@ enum class Format { ascii, little_endian, big_endian };
 struct Header {
     Format format = Format::ascii;
     std::vector<Element> elements;
+    std::map<int, std::string> strip_names;
 };
 
 constexpr const char* advice =
@@ -70,9 +72,10 @@ class HeaderReader {
             if (word == "format") read_format(line);
             if (word == "element") read_element(line);
             if (word == "property") read_property(line);
+            if (word == "comment") read_comment(line);
             const bool known = word.empty() || word == "comment" || word == "obj_info" || word == "format" ||
                                word == "element" || word == "property";
-            if (!known) fail(fmt::format("unknown word \"{}\" in the header", word));
+            if (!known) fail(fmt::format("unknown word \"{}\" in the header", word.substr(0, 40)));
         }
         fail("the file ends within its header");
     }
@@ -89,6 +92,16 @@ class HeaderReader {
             header_.format = Format::big_endian;
         else
             fail(fmt::format("unknown format \"{}\"", name));
+    }
+
+    /// "strip 0 arm" names a strip; all else is for people.
+    void read_comment(std::string_view line) {
+        int number = -1;
+        if (take_word(line) != "strip" || !read_number(take_word(line), number) || number < 0) return;
+        const std::size_t begin = line.find_first_not_of(" \t");
+        const std::size_t end = line.find_last_not_of(" \t\r");
+        if (begin != std::string_view::npos)
+            header_.strip_names[number] = line.substr(begin, end - begin + 1);
     }
 
     void read_element(std::string_view line) {
@@ -224,6 +237,7 @@ double* vertex_target(Vec3& vertex, const std::string& name) {
 struct Face {
     Print print;
     double thickness = 0.0;
+    double strip = -1.0;
     bool has_corners = false;
     Triangle corners = {};
 };
@@ -232,6 +246,7 @@ double* face_target(Face& face, const std::string& name) {
     if (name == "front_mm") return &face.print.front;
     if (name == "back_mm") return &face.print.back;
     if (name == "thickness_mm") return &face.thickness;
+    if (name == "strip") return &face.strip;
     if (name == "front_modulus_mpa") return &face.print.front_modulus;
     if (name == "back_modulus_mpa") return &face.print.back_modulus;
     return nullptr;
@@ -278,6 +293,7 @@ RawMesh read_ply(const std::string& path) {
     check_properties(header, path);
     Body body(scan, header.format, path);
     RawMesh mesh;
+    mesh.strip_names = header.strip_names;
     for (const Element& element : header.elements) {
         const bool vertices = element.name == "vertex";
         const bool faces = element.name == "face";
@@ -304,6 +320,7 @@ RawMesh read_ply(const std::string& path) {
                 face.print.front = face.thickness;
             mesh.triangles.push_back(face.corners);
             mesh.print.push_back(face.print);
+            mesh.strip.push_back(index_of(face.strip));
         }
     }
     return mesh;

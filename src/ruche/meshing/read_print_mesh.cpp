@@ -34,7 +34,7 @@ class Checker {
         layout.print = std::move(raw_.print);
         layout.warnings = std::move(warnings_);
         try {
-            find_strips(layout);
+            find_strips(layout, raw_.strip, raw_.strip_names);
         } catch (const InputError& error) {
             throw InputError({.file = file_, .key = error.place().key}, error.problem(), error.advice());
         }

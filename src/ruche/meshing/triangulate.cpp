@@ -231,19 +231,31 @@ Triangulation extract(Input& input, const SegmentGraph& graph) {
     return result;
 }
 
-}  // namespace
-
-Triangulation triangulate(const SegmentGraph& graph, const std::function<double(const Vec2&)>& size,
-                          int most_triangles) {
-    Input input;
+/// Inserts the points and segments and marks the domain; false when they span no area.
+bool mark(Input& input, const SegmentGraph& graph) {
     insert(input, graph);
-    if (input.cdt.dimension() < 2) return {};
+    if (input.cdt.dimension() < 2) return false;
     const int pieces = number_pieces(input.cdt);
     const std::vector<char> inside = pieces_inside(pieces_beside(input, graph), graph.outline, pieces);
     for (Cdt::Face_handle face : input.cdt.all_face_handles()) {
         face->set_in_domain(!input.cdt.is_infinite(face) && inside[face->info()]);
     }
+    return true;
+}
+
+}  // namespace
+
+Triangulation triangulate(const SegmentGraph& graph, const std::function<double(const Vec2&)>& size,
+                          int most_triangles) {
+    Input input;
+    if (!mark(input, graph)) return {};
     refine(input.cdt, size, most_triangles);
+    return extract(input, graph);
+}
+
+Triangulation triangulate_coarsely(const SegmentGraph& graph) {
+    Input input;
+    if (!mark(input, graph)) return {};
     return extract(input, graph);
 }
 

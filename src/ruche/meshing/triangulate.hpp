@@ -29,4 +29,7 @@ struct Triangulation {
 Triangulation triangulate(const SegmentGraph& graph, const std::function<double(const Vec2&)>& size,
                           int most_triangles);
 
+/// The same without refinement: no further points, angles as they come.
+Triangulation triangulate_coarsely(const SegmentGraph& graph);
+
 }  // namespace ruche

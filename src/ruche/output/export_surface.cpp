@@ -43,6 +43,10 @@ std::vector<DataColumn> face_columns(const SurfaceFields& fields) {
     std::vector<DataColumn> data;
     data.push_back(column("front_mm", Kind::float64, fields.front_mm, same));
     data.push_back(column("back_mm", Kind::float64, fields.back_mm, same));
+    if (!fields.front_modulus_mpa.empty()) {
+        data.push_back(column("front_modulus_mpa", Kind::float64, fields.front_modulus_mpa, same));
+        data.push_back(column("back_modulus_mpa", Kind::float64, fields.back_modulus_mpa, same));
+    }
     data.push_back(
         column("side", Kind::int32, fields.side, [](PrintedSide side) { return static_cast<int>(side); }));
     data.push_back(column("strip", Kind::int32, fields.strip, [](int strip) { return strip; }));

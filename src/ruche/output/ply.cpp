@@ -29,6 +29,15 @@ std::string properties(const std::vector<DataColumn>& columns) {
     return text;
 }
 
+/// A name as a header's line can hold it.
+std::string one_line(const std::string& name) {
+    constexpr std::size_t longest = 200;
+    std::string text = name.substr(0, longest);
+    for (char& c : text)
+        if (static_cast<unsigned char>(c) < 0x20U) c = ' ';
+    return text;
+}
+
 template <class Out>
 void write_row(Out out, const std::vector<DataColumn>& columns, std::size_t row) {
     for (const DataColumn& column : columns) {
@@ -50,6 +59,8 @@ std::string to_ply(const ExportSurface& surface) {
     std::string text = "ply\nformat ascii 1.0\n";
     text += "comment lengths in mm; curvature positive when the concave side is the back\n";
     text += "comment side: 0 bare fabric, 1 front, 2 back, 3 both; strip: -1 none\n";
+    for (std::size_t i = 0; i < surface.strip_ids.size(); ++i)
+        text += fmt::format("comment strip {} {}\n", i, one_line(surface.strip_ids[i]));
     text += fmt::format("element vertex {}\n", surface.positions.size());
     text += "property double x\nproperty double y\nproperty double z\n";
     text += "property float nx\nproperty float ny\nproperty float nz\n";

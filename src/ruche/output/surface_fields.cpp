@@ -52,10 +52,17 @@ SurfaceFields surface_fields(const Result& result, std::span<const double> energ
     fields.vertex_normal = vertex_normals(mesh.triangles, result.shape);
     fields.vertex_curvature = vertex_curvatures(mesh.triangles, result.shape, fields.vertex_normal);
     fields.energy_density.assign(energy_density.begin(), energy_density.end());
+    const bool own_moduli = std::ranges::any_of(result.layout.print, [](const Print& print) {
+        return print.front_modulus != 0.0 || print.back_modulus != 0.0;
+    });
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Print print = result.layout.print.empty() ? Print{} : result.layout.print[t];
         fields.front_mm.push_back(print.front);
         fields.back_mm.push_back(print.back);
+        if (own_moduli) {
+            fields.front_modulus_mpa.push_back(print.front_modulus);
+            fields.back_modulus_mpa.push_back(print.back_modulus);
+        }
         fields.side.push_back(printed_side(print));
         fields.strip.push_back(result.layout.strip.empty() ? -1 : result.layout.strip[t]);
         fields.face_normal.push_back(unit_normal(mesh.triangles[t], result.shape));

@@ -20,6 +20,8 @@ struct SurfaceFields {
 
     std::vector<double> front_mm;  ///< printed thickness, 0 = none
     std::vector<double> back_mm;
+    std::vector<double> front_modulus_mpa;  ///< 0 = the card's; both empty when it is that everywhere
+    std::vector<double> back_modulus_mpa;
     std::vector<PrintedSide> side;
     std::vector<int> strip;                       ///< index into layout.strips, -1 = bare fabric
     std::vector<Vec3> face_normal;                ///< unit; zero for a triangle without area

@@ -1,0 +1,120 @@
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "ruche/meshing/print_mesh.hpp"
+#include "ruche/output/export_surface.hpp"
+#include "ruche/output/exporters.hpp"
+#include "ruche/output/metrics.hpp"
+#include "ruche/output/surface_fields.hpp"
+#include "ruche/pattern/generator_registry.hpp"
+
+using namespace ruche;
+
+namespace {
+
+PrintMesh drawn(const std::string& generator, const std::map<std::string, std::string>& options) {
+    const PrintRules rules{.thickness = 0.7};
+    return mesh_pattern(to_pattern(generate(generator, options), rules));
+}
+
+/// The layout as it comes back from a file that Ruche wrote, or that somebody else wrote who knows thickness
+/// alone.
+PrintMesh read_back(const PrintMesh& layout, bool thickness_alone = false) {
+    Result result;
+    result.layout = layout;
+    for (const Vec2& v : layout.mesh.vertices) result.shape.emplace_back(v.x(), v.y(), 0.0);
+    std::string text = to_ply(layout_surface(result, surface_fields(result)));
+    if (thickness_alone) {
+        const std::string property = "property int strip\n";
+        text.replace(text.find(property), property.size(), "property int other\n");
+    }
+    const auto path = std::filesystem::temp_directory_path() /
+                      fmt::format("ruche-layout-{}.ply", reinterpret_cast<std::uintptr_t>(&layout));
+    std::ofstream(path, std::ios::binary) << text;
+    PrintMesh again = read_print_mesh(path.string());
+    std::filesystem::remove(path);
+    return again;
+}
+
+/// The layout rolled to a cylinder whose axis lies 20 degrees from y.
+std::vector<Vec3> rolled(const PrintMesh& layout, double radius) {
+    const Vec2 across(std::cos(0.349), std::sin(0.349));
+    std::vector<Vec3> shape;
+    for (const Vec2& v : layout.mesh.vertices) {
+        const double u = across.dot(v);
+        const double along = across.x() * v.y() - across.y() * v.x();
+        shape.emplace_back(radius * std::sin(u / radius), along, radius * (std::cos(u / radius) - 1.0));
+    }
+    return shape;
+}
+
+const std::vector<std::pair<std::string, std::map<std::string, std::string>>> straight_patterns = {
+    {"strip", {{"length_mm", "20"}}}, {"staggered", {{"rows", "4"}}}, {"radial", {}}, {"stars", {}}};
+
+}  // namespace
+
+TEST_CASE("mesh input: the mesh of a generated pattern has the strips of the pattern") {
+    for (const auto& [name, options] : straight_patterns) {
+        CAPTURE(name);
+        const PrintMesh layout = drawn(name, options);
+        const PrintMesh again = read_back(layout);
+        CHECK(again.mesh.vertices == layout.mesh.vertices);
+        CHECK(again.mesh.triangles == layout.mesh.triangles);
+        CHECK(again.print == layout.print);
+        CHECK(again.strip == layout.strip);
+        REQUIRE(again.strips.size() == layout.strips.size());
+        for (std::size_t i = 0; i < layout.strips.size(); ++i) {
+            CHECK(again.strips[i].id == layout.strips[i].id);
+            CHECK(again.strips[i].side == layout.strips[i].side);
+            CHECK(again.strips[i].thickness == layout.strips[i].thickness);
+            CHECK(again.strips[i].centreline.size() == layout.strips[i].centreline.size());
+        }
+    }
+}
+
+TEST_CASE("mesh input: strips of a mesh file are as curved and as long as the drawing's") {
+    // Both are measured at other points of the same facets of about h = 1 mm, on a cylinder of radius R:
+    // normals and curvatures of facets differ from the cylinder's by a share of (h / R)^2, lengths by (h /
+    // R)^2 / 24. Lines differ by the grid of 1 nm on which borders lie, their ends by a few times that.
+    constexpr double radius = 60.0;
+    constexpr double facets = 1.0 / (radius * radius);
+    for (const auto& [name, options] : straight_patterns) {
+        CAPTURE(name);
+        const PrintMesh layout = drawn(name, options);
+        const PrintMesh again = read_back(layout);
+        const std::vector<Vec3> shape = rolled(layout, radius);
+        const std::vector<StripMetrics> wanted = measure_strips(layout, shape);
+        const std::vector<StripMetrics> found = measure_strips(again, shape);
+        REQUIRE(found.size() == wanted.size());
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            CAPTURE(wanted[i].id);
+            CHECK(std::abs(found[i].curvature - wanted[i].curvature) * radius < facets);
+            CHECK(std::abs(found[i].printed_length - wanted[i].printed_length) < 2e-5);
+            CHECK(std::abs(found[i].stretch - wanted[i].stretch) < facets / 24);
+        }
+    }
+}
+
+TEST_CASE("mesh input: without numbers of strips, what hangs together and is equally thick is a strip") {
+    const PrintMesh layout = drawn("stars", {});
+    const PrintMesh again = read_back(layout, true);
+    REQUIRE(again.strips.size() == layout.strips.size());
+    for (const MeshedStrip& strip : again.strips) {
+        CHECK(strip.id.starts_with("strip-"));
+        CHECK(strip.centreline.size() == 3);
+    }
+}
+
+TEST_CASE("mesh input: moduli and names with blanks survive in a layout that Ruche wrote") {
+    PrintMesh layout = drawn("strip", {{"length_mm", "20"}});
+    for (Print& print : layout.print)
+        if (!print.bare()) print.front_modulus = 26.5;
+    layout.strips[0].id = "the \xc3\xbc\nstrip";
+    const PrintMesh again = read_back(layout);
+    CHECK(again.print == layout.print);
+    CHECK(again.strips[0].id == "the \xc3\xbc strip");
+}
