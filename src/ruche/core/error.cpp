@@ -14,6 +14,10 @@ static std::string message(const Place& place, const std::string& problem, const
     if (!text.empty()) text += ": ";
     text += problem;
     if (!advice.empty()) text += "\n  " + advice;
+    // What is quoted from a file may be anything: a zero byte would end the message.
+    for (char& c : text) {
+        if (static_cast<unsigned char>(c) < 0x20U && c != '\n') c = '?';
+    }
     return text;
 }
 
