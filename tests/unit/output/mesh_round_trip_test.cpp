@@ -16,9 +16,10 @@ using namespace ruche;
 
 namespace {
 
-PrintMesh drawn(const std::string& generator, const std::map<std::string, std::string>& options) {
+PrintMesh drawn(const std::string& generator, const std::map<std::string, std::string>& options,
+                double size = 1.0) {
     const PrintRules rules{.thickness = 0.7};
-    return mesh_pattern(to_pattern(generate(generator, options), rules));
+    return mesh_pattern(to_pattern(generate(generator, options), rules), {.size_mm = size});
 }
 
 /// The layout as it comes back from a file that Ruche wrote, or that somebody else wrote who knows thickness
@@ -52,13 +53,16 @@ std::vector<Vec3> rolled(const PrintMesh& layout, double radius) {
     return shape;
 }
 
-const std::vector<std::pair<std::string, std::map<std::string, std::string>>> straight_patterns = {
-    {"strip", {{"length_mm", "20"}}}, {"staggered", {{"rows", "4"}}}, {"radial", {}}, {"stars", {}}};
+const std::vector<std::pair<std::string, std::map<std::string, std::string>>> patterns = {
+    {"strip", {{"length_mm", "20"}}},
+    {"staggered", {{"rows", "3"}}},
+    {"radial", {{"outer_mm", "20"}, {"rings", "12:6,16:6"}}},
+    {"stars", {{"radius_mm", "16"}}}};
 
 }  // namespace
 
 TEST_CASE("mesh input: the mesh of a generated pattern has the strips of the pattern") {
-    for (const auto& [name, options] : straight_patterns) {
+    for (const auto& [name, options] : patterns) {
         CAPTURE(name);
         const PrintMesh layout = drawn(name, options);
         const PrintMesh again = read_back(layout);
@@ -77,14 +81,15 @@ TEST_CASE("mesh input: the mesh of a generated pattern has the strips of the pat
 }
 
 TEST_CASE("mesh input: strips of a mesh file are as curved and as long as the drawing's") {
-    // Both are measured at other points of the same facets of about h = 1 mm, on a cylinder of radius R:
-    // normals and curvatures of facets differ from the cylinder's by a share of (h / R)^2, lengths by (h /
-    // R)^2 / 24. Lines differ by the grid of 1 nm on which borders lie, their ends by a few times that.
-    constexpr double radius = 60.0;
-    constexpr double facets = 1.0 / (radius * radius);
-    for (const auto& [name, options] : straight_patterns) {
+    // Both are measured at other points of the same facets of size h on a cylinder. Such points lie up to h^2
+    // / 8 R inside of it, and a line of length L rises by L^2 / 8 R: curvatures may differ by a share of (h /
+    // L)^2, lengths of facets by (h / R)^2 / 24. Lines differ by the grid of 1 nm on which borders lie, their
+    // ends by a few times that.
+    constexpr double radius = 30.0;
+    constexpr double size = 0.25;
+    for (const auto& [name, options] : patterns) {
         CAPTURE(name);
-        const PrintMesh layout = drawn(name, options);
+        const PrintMesh layout = drawn(name, options, size);
         const PrintMesh again = read_back(layout);
         const std::vector<Vec3> shape = rolled(layout, radius);
         const std::vector<StripMetrics> wanted = measure_strips(layout, shape);
@@ -92,9 +97,11 @@ TEST_CASE("mesh input: strips of a mesh file are as curved and as long as the dr
         REQUIRE(found.size() == wanted.size());
         for (std::size_t i = 0; i < wanted.size(); ++i) {
             CAPTURE(wanted[i].id);
-            CHECK(std::abs(found[i].curvature - wanted[i].curvature) * radius < facets);
+            const double line =
+                wanted[i].printed_length / static_cast<double>(layout.strips[i].centreline.size());
+            CHECK(std::abs(found[i].curvature - wanted[i].curvature) * radius < size * size / (line * line));
             CHECK(std::abs(found[i].printed_length - wanted[i].printed_length) < 2e-5);
-            CHECK(std::abs(found[i].stretch - wanted[i].stretch) < facets / 24);
+            CHECK(std::abs(found[i].stretch - wanted[i].stretch) < size * size / (radius * radius) / 24);
         }
     }
 }
