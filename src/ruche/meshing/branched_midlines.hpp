@@ -6,8 +6,8 @@
 
 namespace ruche {
 
-/// Lines along the middle of a printed region that branches: a star, a cross, a tiling. Empty when it does not
-/// branch; then `midline` is the better tool.
+/// Lines along the middle of a printed region that branches: a star, a cross, a tiling. Empty when it does
+/// not branch; then `midline` is the better tool.
 ///
 /// They are the chordal axis (Prasad 1997): the midpoints of the edges inside a constrained Delaunay
 /// triangulation of the border's points, which between parallel sides lie exactly half way. Branches that
