@@ -6,7 +6,8 @@ template <>
 std::span<const Field<MeshOptions>> fields<MeshOptions>() {
     using M = MeshOptions;
     static const Field<M> table[] = {
-        {"size_mm", &M::size_mm, "mm", 0.01, 1000, "Edge length of the elements on plastic."},
+        {"size_mm", &M::size_mm, "mm", 0.01, 1000,
+         "Edge length of the elements on plastic; down to 0.35 of it where thin or wide strips need that."},
         {"elements_across", &M::elements_across, "", 0.5, 100,
          "At least so many elements across the width of a strip."},
         {"fabric_size_mm", &M::fabric_size_mm, "mm", 0.01, 1000,

@@ -35,21 +35,39 @@ void check(const Pattern& pattern, const MeshOptions& options) {
     if (pattern.fabric.empty()) throw InputError({}, "the pattern has no fabric to mesh");
 }
 
-double size_on(const Polygon& polygon, const MeshOptions& options) {
-    return std::min(options.size_mm, strip_width(polygon) / options.elements_across);
+// The edge length that keeps a strip's curvature within 1 % of a converged one (theory page, section 5.3;
+// bench/mesh_study.py), in proportion to `size_mm`. Elements must be small against the radius of curvature. A
+// strip that is wide compared to its thickness also curls across its width, and how far it does changes its
+// curvature along: there (size * width) must be small against (sheet thickness * radius) until the strip is
+// so wide that only its rims curl.
+double resolving_size(double width, double thickness, const MeshOptions& options) {
+    // Of a narrow strip of Table 1's materials, mm: within a quarter from 0.3 to 1.2 mm of plastic.
+    const double radius = 19.0 * thickness * thickness;
+    constexpr double third_of_sheet = 0.38;  // mm
+    const double along = radius / 4.5;
+    const double across = std::max(third_of_sheet * radius / width, width / 12.0);
+    constexpr double smallest_share = 0.35;  // thin plastic must not cost any number of elements
+    return options.size_mm * std::clamp(std::min(along, across) / MeshOptions{}.size_mm, smallest_share, 1.0);
+}
+
+double size_on(const Polygon& polygon, double thickness, const MeshOptions& options) {
+    const double width = strip_width(polygon);
+    return std::min(width / options.elements_across, resolving_size(width, thickness, options));
 }
 
 SizeField size_field(const Pattern& pattern, const MeshOptions& options) {
     double finest = options.size_mm;
     for (const Strip& strip : pattern.strips) {
-        for (const Polygon& polygon : strip.region) finest = std::min(finest, size_on(polygon, options));
+        for (const Polygon& polygon : strip.region)
+            finest = std::min(finest, size_on(polygon, strip.thickness, options));
     }
     SizeField field(bounding_box(pattern.fabric),
                     {.far_size = std::max(options.fabric_size_mm, options.size_mm),
                      .grading = options.grading,
                      .finest = finest});
     for (const Strip& strip : pattern.strips) {
-        for (const Polygon& polygon : strip.region) field.refine({polygon}, size_on(polygon, options));
+        for (const Polygon& polygon : strip.region)
+            field.refine({polygon}, size_on(polygon, strip.thickness, options));
     }
     field.spread();
     return field;
@@ -210,7 +228,8 @@ std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions
             return (strip.side == Side::front ? covers[t].front : covers[t].back) == s;
         };
         double size = options.size_mm;
-        for (const Polygon& polygon : strip.region) size = std::min(size, size_on(polygon, options));
+        for (const Polygon& polygon : strip.region)
+            size = std::min(size, size_on(polygon, strip.thickness, options));
         for (const Polyline& line : strip.centreline) {
             const double pieces = std::ceil(length(line) / (0.5 * size) - 1e-9);
             if (!(pieces >= 1.0 && pieces < most_triangles)) continue;

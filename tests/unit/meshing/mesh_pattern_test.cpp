@@ -114,7 +114,7 @@ TEST_CASE("mesh: a single strip is made of whole elements, its area is exact") {
 
 TEST_CASE("mesh: size, elements across and fabric size do what they say") {
     Pattern drawn;
-    drawn.strips = {strip("a", {Vec2(0, 0), Vec2(30, 0)}, 4.0)};
+    drawn.strips = {strip("a", {Vec2(0, 0), Vec2(30, 0)}, 4.0, 1.0)};
     const Pattern pattern = finish_pattern(drawn, 20.0);
     const auto longest_edge = [](const PrintMesh& mesh, bool plastic) {
         double longest = 0.0;
@@ -138,6 +138,24 @@ TEST_CASE("mesh: size, elements across and fabric size do what they say") {
     CHECK(longest_edge(mesh_pattern(pattern, {.fabric_size_mm = 4.0}), false) > 3.5);
     CHECK(mesh_pattern(pattern, {.fabric_size_mm = 4.0, .grading = 0.05}).mesh.triangle_count() >
           2 * mesh_pattern(pattern, {.fabric_size_mm = 4.0, .grading = 1.0}).mesh.triangle_count());
+}
+
+TEST_CASE("mesh: thin and wide strips get smaller elements where they need them, in proportion to the size") {
+    const auto triangles = [](double width, double thickness, double size) {
+        Pattern drawn;
+        drawn.strips = {strip("a", {Vec2(0, 0), Vec2(60, 0)}, width, thickness)};
+        return 1.0 * mesh_pattern(finish_pattern(drawn, 0.0), {.size_mm = size}).mesh.triangle_count();
+    };
+    const auto elements_of = [](double size) { return doctest::Approx(1.0 / (size * size)).epsilon(0.15); };
+    // It curls across its width: 0.38 * 19 * 0.6^2 / 5 = 0.52 mm. Thicker it does not.
+    CHECK(triangles(5.0, 0.6, 1.0) / triangles(5.0, 1.2, 1.0) == elements_of(0.52));
+    CHECK(triangles(5.0, 0.6, 0.5) / triangles(5.0, 1.2, 0.5) == elements_of(0.52));
+    // Too narrow for that, or so wide that only its rims curl.
+    CHECK(triangles(1.0, 0.6, 1.0) == triangles(1.0, 1.2, 1.0));
+    CHECK(triangles(14.0, 0.6, 1.0) == triangles(14.0, 1.8, 1.0));
+    // Strongly curved: 19 * 0.4^2 / 4.5 = 0.68 mm; however thin, no smaller than 0.35 of the size.
+    CHECK(triangles(14.0, 0.4, 1.0) / triangles(14.0, 1.8, 1.0) == elements_of(0.68));
+    CHECK(triangles(14.0, 0.1, 1.0) / triangles(14.0, 1.8, 1.0) == elements_of(0.35));
 }
 
 TEST_CASE("mesh: a strip thinner than an element keeps exactly its area") {
