@@ -215,6 +215,7 @@ static void check_weight(const Scene& scene, const ModelInput& model) {
 }
 
 ModelInput scene_model(const Scene& scene, const PrintMesh& layout) {
+    constexpr double table_stiffness = 1.0;  // N/mm^3: a printed sheet sinks in by micrometres
     ModelInput model{.mesh = layout.mesh,
                      .print = layout.print,
                      .material = scene.material,
@@ -223,7 +224,9 @@ ModelInput scene_model(const Scene& scene, const PrintMesh& layout) {
                      .gravity = scene.gravity.acceleration_mm_per_s2,
                      .supports = model_supports(scene, layout.mesh),
                      .forces = model_forces(scene, layout.mesh),
-                     .table = {.present = scene.gravity.table, .height = scene.gravity.table_height_mm},
+                     .table = {.present = scene.gravity.table,
+                               .height = scene.gravity.table_height_mm,
+                               .stiffness_per_area = table_stiffness},
                      .options = scene.model};
     check_held(scene, model);
     check_weight(scene, model);
