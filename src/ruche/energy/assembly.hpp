@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <numeric>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,12 @@ namespace ruche {
 struct AssembledSums {
     Eigen::VectorXd gradient;
     std::vector<double> hessian;  ///< values of a NodePattern
+};
+
+/// The same for a few unknowns.
+struct DenseSums {
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd hessian;
 };
 
 /// Sums a term over its elements, in parallel and with the same bits at any thread count: elements are
@@ -41,6 +48,7 @@ class TermAssembly {
     void prepare(const NodePattern& pattern) {
         pattern_ = &pattern;
         colour_blocks();
+        list_elements_of_nodes();
         const int count = term_.element_count();
         offsets_.resize(static_cast<std::size_t>(count) * pairs);
         parallel_for((count + block_size - 1) / block_size, [&](std::size_t block) {
@@ -59,6 +67,44 @@ class TermAssembly {
             }
         });
     }
+
+    /// Elements that touch any of `nodes`, ascending.
+    std::vector<int> elements_at(std::span<const int> nodes) const {
+        std::vector<int> found;
+        for (const int node : nodes) {
+            found.insert(found.end(), elements_of_node_.begin() + first_element_[node],
+                         elements_of_node_.begin() + first_element_[node + 1]);
+        }
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+    /// Adds the gradient and Hessian of one element to dense ones; `local[i]` says where the element's i-th
+    /// unknown stands in them, -1 = nowhere. Returns its energy.
+    double add_dense(int element, const Unknowns& x, Order order, const int* local, DenseSums& sums) const {
+        const auto own = term_.evaluate(element, x, order);
+        if (order == Order::value) return own.value;
+        for (int i = 0; i < unknowns_per_element; ++i) {
+            if (local[i] < 0) continue;
+            sums.gradient[local[i]] += own.gradient[i];
+            if (!wants_hessian(order)) continue;
+            for (int j = 0; j < unknowns_per_element; ++j) {
+                if (local[j] >= 0) sums.hessian(local[i], local[j]) += own.hessian(i, j);
+            }
+        }
+        return own.value;
+    }
+
+    /// The global number of each of the element's unknowns, -1 where it has fewer.
+    void unknowns_of(int element, int* unknowns) const {
+        const auto nodes = term_.nodes(element);
+        for (int i = 0; i < slots; ++i) {
+            for (int c = 0; c < local_size(i); ++c)
+                unknowns[local_start(i) + c] = nodes[i] < 0 ? -1 : pattern_->first_unknown(nodes[i]) + c;
+        }
+    }
+    static constexpr int unknowns_per_element = 3 * T::vertex_slots + T::edge_slots;
 
     /// Adds gradient and Hessian to `sums` as far as `order` asks; returns the energy.
     double add(const Unknowns& x, Order order, AssembledSums& sums) const {
@@ -107,6 +153,22 @@ class TermAssembly {
             colours_[colour].push_back(block);
         }
         colours_.insert(colours_.end(), alone.begin(), alone.end());
+    }
+
+    void list_elements_of_nodes() {
+        first_element_.assign(pattern_->node_count() + 1, 0);
+        const auto for_each_node = [&](auto&& use) {
+            for (int e = 0; e < term_.element_count(); ++e) {
+                for (const int node : term_.nodes(e)) {
+                    if (node >= 0) use(e, node);
+                }
+            }
+        };
+        for_each_node([&](int, int node) { ++first_element_[node + 1]; });
+        std::partial_sum(first_element_.begin(), first_element_.end(), first_element_.begin());
+        elements_of_node_.resize(first_element_.back());
+        std::vector<int> next(first_element_.begin(), first_element_.end() - 1);
+        for_each_node([&](int e, int node) { elements_of_node_[next[node]++] = e; });
     }
 
     static constexpr int local_start(int slot) {
@@ -163,6 +225,7 @@ class TermAssembly {
     const NodePattern* pattern_ = nullptr;
     std::vector<std::vector<int>> colours_;
     std::vector<int> offsets_;
+    std::vector<int> first_element_, elements_of_node_;  // by node, compressed
 };
 
 }  // namespace ruche

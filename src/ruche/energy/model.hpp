@@ -111,6 +111,28 @@ class Model {
     /// between calls.
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
 
+    /// Some unknowns that may move while all others stay.
+    class Patch {
+      public:
+        int size() const { return static_cast<int>(unknowns_.size()); }
+        const std::vector<int>& unknowns() const { return unknowns_; }  ///< global numbers
+
+      private:
+        friend class Model;
+        /// The elements of one term that touch the patch, and where their unknowns stand in it.
+        struct Elements {
+            std::vector<int> numbers;
+            std::vector<int> local;
+        };
+        std::vector<int> unknowns_;
+        std::array<Elements, 4> terms_;
+    };
+    /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
+    Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;
+    /// Energy of the elements that touch the patch, up to a constant; `sums` over the patch's unknowns, in
+    /// their order. Costs in proportion to the patch, not to the sheet.
+    double evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const;
+
     EnergyTerms energy_terms(const Eigen::VectorXd& x) const;
     double energy(const Eigen::VectorXd& x) const { return energy_terms(x).total(); }
     Eigen::VectorXd gradient(const Eigen::VectorXd& x) const;

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "ruche/core/error.hpp"
+#include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
 #include "ruche/statics/rigid_motions.hpp"
 #include "ruche/statics/sparse_cholesky.hpp"
@@ -53,10 +54,12 @@ class Newton {
           options_(options),
           control_(control),
           rigid_(model),
-          retraction_(model),
+          vertex_order_(vertex_elimination_order(model.pattern())),
+          retraction_(model, vertex_order_),
           cholesky_({model.size(), model.pattern().column_start(), model.pattern().row_index()},
-                    elimination_order(model)),
+                    elimination_order(model, vertex_order_)),
           held_(model.size(), 0),
+          elimination_(model, held_),
           taut_(!model.input().supports.empty() || !model.input().forces.empty()) {
         for (const Support& support : model.input().supports) {
             for (int c = 0; c < 3; ++c) held_[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
@@ -101,6 +104,7 @@ class Newton {
     bool factorize(Order order, double shift = 0.0);
     bool solve_step(Order order);
     bool line_search();
+    void relax_spots();
     bool leave_saddle();
     void report() const;
 
@@ -108,9 +112,11 @@ class Newton {
     SolveOptions options_;
     const Control& control_;
     RigidMotions rigid_;
+    std::vector<int> vertex_order_;
     Retraction retraction_;
     SparseCholesky cholesky_;
     std::vector<char> held_;
+    NonlinearElimination elimination_;
     bool taut_;  // supports or forces may keep the sheet under tension: no release in which it cancels along
                  // the path
 
@@ -194,6 +200,14 @@ bool Newton::line_search() {
         }
     }
     return false;
+}
+
+/// Nonlinear elimination after a step, unless Newton's method converges well without it.
+void Newton::relax_spots() {
+    constexpr double converging = 0.01;
+    const double before = residual();
+    evaluate(x_, Order::gradient, trial_);
+    if (trial_.gradient.cwiseAbs().maxCoeff() > converging * before) elimination_(x_, trial_.gradient);
 }
 
 /// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
@@ -297,6 +311,7 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             evaluate(Order::hessian);
             stalled = !(solve_step(Order::hessian) && line_search());
         }
+        if (!stalled) relax_spots();
     }
     result.x = x_;
     result.energy = terms_;

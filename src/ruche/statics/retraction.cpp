@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "ruche/core/parallel.hpp"
 
@@ -61,7 +62,8 @@ Edges edge_change(const Edges& d, const ElementStep& step, double t) {
 
 }  // namespace
 
-Retraction::Retraction(const Model& model) : vertex_count_(model.vertex_count()) {
+Retraction::Retraction(const Model& model, std::vector<int> vertex_order)
+    : vertex_count_(model.vertex_count()), order_(std::move(vertex_order)) {
     const ModelInput& input = model.input();
     const TriangleMesh& mesh = input.mesh;
     pieces_ = find_pieces(mesh);
@@ -99,21 +101,7 @@ Retraction::Retraction(const Model& model) : vertex_count_(model.vertex_count())
             }
         }
     }
-    std::vector<int> start(vertex_count_ + 1, 0);
-    std::vector<int> neighbours;
-    std::vector<std::vector<int>> adjacent(vertex_count_);
-    for (int c = 0; c < vertex_count_; ++c) {
-        for (const int r : pattern.rows_of(c)) {
-            if (r == c) continue;
-            adjacent[c].push_back(r);
-            adjacent[r].push_back(c);
-        }
-    }
-    for (int v = 0; v < vertex_count_; ++v) {
-        neighbours.insert(neighbours.end(), adjacent[v].begin(), adjacent[v].end());
-        start[v + 1] = static_cast<int>(neighbours.size());
-    }
-    order_ = nested_dissection(start, neighbours);
+    if (order_.empty()) order_ = vertex_elimination_order(model.pattern());
 
     for (int c = 0; c < 3; ++c) {
         held_[c].assign(vertex_count_, 0);
@@ -159,71 +147,95 @@ SparseCholesky& Retraction::factor_without(int component) {
     return *factors_[component];
 }
 
-void Retraction::weighted_divergence(const std::vector<Edges>& edge_changes, Eigen::MatrixXd& out) const {
-    out.setZero(vertex_count_, 3);
+Eigen::MatrixXd Retraction::weighted_divergence(const std::vector<Edges>& edge_changes) const {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(vertex_count_, 3);
     for (std::size_t t = 0; t < elements_.size(); ++t) {
         const Element& e = elements_[t];
-        const Eigen::Matrix<double, 3, 3> pull = e.weight * (edge_changes[t] * e.inverse_edges) * e.gradients;
-        for (int i = 0; i < 3; ++i) out.row(e.vertices[i]) += pull.col(i).transpose();
+        const Mat3 pull = e.weight * (edge_changes[t] * e.inverse_edges) * e.gradients;
+        for (int i = 0; i < 3; ++i) sum.row(e.vertices[i]) += pull.col(i).transpose();
     }
+    return sum;
 }
 
-Eigen::VectorXd Retraction::operator()(const Eigen::VectorXd& x, const Eigen::VectorXd& step, double t) {
-    std::vector<Edges> change(elements_.size());
-    constexpr std::size_t chunk = 512;
-    parallel_for((elements_.size() + chunk - 1) / chunk, [&](std::size_t block) {
-        for (std::size_t i = block * chunk; i < std::min(elements_.size(), (block + 1) * chunk); ++i) {
-            const Edges d = edges_of(x, elements_[i].vertices);
-            change[i] = edge_change(d, element_step(d, edges_of(step, elements_[i].vertices)), t);
-        }
-    });
-    Eigen::MatrixXd rhs;
-    weighted_divergence(change, rhs);
-
-    Eigen::VectorXd result = x;
-    result.tail(x.size() - 3 * static_cast<Eigen::Index>(vertex_count_)) +=
-        t * step.tail(x.size() - 3 * static_cast<Eigen::Index>(vertex_count_));
+Eigen::MatrixXd Retraction::integrate(const std::vector<Edges>& edge_changes,
+                                      const Eigen::VectorXd& mean_of) {
+    Eigen::MatrixXd rhs = weighted_divergence(edge_changes);
     for (int c = 0; c < 3; ++c) {
         for (int v = 0; v < vertex_count_; ++v) {
             if (dirichlet_[c][v]) rhs(v, c) = 0.0;
         }
     }
-    const bool same = dirichlet_[0] == dirichlet_[1] && dirichlet_[1] == dirichlet_[2];
     Eigen::MatrixXd moved(vertex_count_, 3);
-    if (same) {
+    if (dirichlet_[0] == dirichlet_[1] && dirichlet_[1] == dirichlet_[2]) {
         moved = factor_without(0).solve(rhs);
     } else {
         for (int c = 0; c < 3; ++c) moved.col(c) = factor_without(c).solve(rhs.col(c));
     }
     for (int c = 0; c < 3; ++c) {
-        // Where nothing holds a piece its mean displacement is the step's.
         std::vector<double> shift(pieces_.count, 0.0);
-        if (!anchors_[c].empty()) {
-            std::vector<double> count(pieces_.count, 0.0);
-            for (int v = 0; v < vertex_count_; ++v) {
-                const int piece = pieces_.of_vertex[v];
-                if (piece < 0) continue;
-                shift[piece] += t * step[3 * static_cast<Eigen::Index>(v) + c] - moved(v, c);
-                count[piece] += 1.0;
-            }
-            std::vector<char> loose(pieces_.count, 0);
-            for (const int v : anchors_[c]) loose[pieces_.of_vertex[v]] = 1;
-            for (int p = 0; p < pieces_.count; ++p) shift[p] = loose[p] ? shift[p] / count[p] : 0.0;
+        std::vector<double> count(pieces_.count, 0.0);
+        std::vector<char> loose(pieces_.count, 0);
+        for (const int v : anchors_[c]) loose[pieces_.of_vertex[v]] = 1;
+        for (int v = 0; v < vertex_count_; ++v) {
+            const int piece = pieces_.of_vertex[v];
+            if (piece < 0 || !loose[piece]) continue;
+            shift[piece] += mean_of[3 * static_cast<Eigen::Index>(v) + c] - moved(v, c);
+            count[piece] += 1.0;
         }
         for (int v = 0; v < vertex_count_; ++v) {
             const int piece = pieces_.of_vertex[v];
-            if (piece >= 0) result[3 * static_cast<Eigen::Index>(v) + c] += moved(v, c) + shift[piece];
+            if (piece < 0) {
+                moved(v, c) = 0.0;
+            } else if (loose[piece]) {
+                moved(v, c) += shift[piece] / count[piece];
+            }
         }
     }
+    return moved;
+}
+
+template <class Body>
+void Retraction::for_each_element(const Body& body) const {
+    constexpr std::size_t chunk = 512;
+    parallel_for((elements_.size() + chunk - 1) / chunk, [&](std::size_t block) {
+        for (std::size_t i = block * chunk; i < std::min(elements_.size(), (block + 1) * chunk); ++i) body(i);
+    });
+}
+
+Eigen::VectorXd Retraction::operator()(const Eigen::VectorXd& x, const Eigen::VectorXd& step, double t) {
+    std::vector<Edges> change(elements_.size());
+    for_each_element([&](std::size_t i) {
+        const Edges d = edges_of(x, elements_[i].vertices);
+        change[i] = edge_change(d, element_step(d, edges_of(step, elements_[i].vertices)), t);
+    });
+    const Eigen::Index positions = 3 * static_cast<Eigen::Index>(vertex_count_);
+    const Eigen::MatrixXd moved = integrate(change, t * step.head(positions));
+    Eigen::VectorXd result = x;
+    for (int v = 0; v < vertex_count_; ++v)
+        result.segment<3>(3 * static_cast<Eigen::Index>(v)) += moved.row(v).transpose();
+    result.tail(x.size() - positions) += t * step.tail(x.size() - positions);
+    return result;
+}
+
+Eigen::VectorXd Retraction::with_edges(const Eigen::VectorXd& x, const std::vector<Edges>& edges) {
+    std::vector<Edges> change(elements_.size());
+    for_each_element([&](std::size_t i) { change[i] = edges[i] - edges_of(x, elements_[i].vertices); });
+    const Eigen::MatrixXd moved =
+        integrate(change, Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(vertex_count_)));
+    Eigen::VectorXd result = x;
+    for (int v = 0; v < vertex_count_; ++v)
+        result.segment<3>(3 * static_cast<Eigen::Index>(v)) += moved.row(v).transpose();
     return result;
 }
 
 double Retraction::rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const {
-    double sum = 0.0;
-    for (const Element& e : elements_) {
-        sum += e.area * element_step(edges_of(x, e.vertices), edges_of(step, e.vertices)).spin.squaredNorm();
-    }
-    return std::sqrt(sum / total_area_);
+    std::vector<double> turned(elements_.size());
+    for_each_element([&](std::size_t i) {
+        const Element& e = elements_[i];
+        turned[i] =
+            e.area * element_step(edges_of(x, e.vertices), edges_of(step, e.vertices)).spin.squaredNorm();
+    });
+    return std::sqrt(std::accumulate(turned.begin(), turned.end(), 0.0) / total_area_);
 }
 
 Eigen::VectorXd Retraction::meet_supports(const Eigen::VectorXd& x) {

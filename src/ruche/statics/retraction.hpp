@@ -19,10 +19,16 @@ namespace ruche {
 /// fabric), whose matrix is factorised once per mesh. Edge unknowns move along the straight line.
 class Retraction {
   public:
-    explicit Retraction(const Model& model);
+    /// `vertex_order`: the elimination order of the vertices; empty = found here.
+    explicit Retraction(const Model& model, std::vector<int> vertex_order = {});
 
     /// The state x(t) for step d.
     Eigen::VectorXd operator()(const Eigen::VectorXd& x, const Eigen::VectorXd& step, double t);
+
+    /// The state nearest to having the given edges [v1 - v0, v2 - v0] per triangle: x moved by the solution
+    /// of the Poisson problem; what no support holds keeps x's mean position. Edge unknowns stay x's.
+    Eigen::VectorXd with_edges(const Eigen::VectorXd& x,
+                               const std::vector<Eigen::Matrix<double, 3, 2>>& edges);
 
     /// Area-weighted root mean square, over elements, of the angle by which a step turns them, rad.
     double rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const;
@@ -39,9 +45,14 @@ class Retraction {
         Mat2 inverse_edges;                     // of [e1 e2] in the layout
     };
 
+    template <class Body>
+    void for_each_element(const Body& body) const;
     SparseCholesky& factor_without(int component);
-    void weighted_divergence(const std::vector<Eigen::Matrix<double, 3, 2>>& edge_changes,
-                             Eigen::MatrixXd& out) const;
+    Eigen::MatrixXd weighted_divergence(const std::vector<Eigen::Matrix<double, 3, 2>>& edge_changes) const;
+    /// Displacements (n, 3) whose gradients are nearest to the edge changes; what no support holds moves by
+    /// the mean of `mean_of` (positions row by row).
+    Eigen::MatrixXd integrate(const std::vector<Eigen::Matrix<double, 3, 2>>& edge_changes,
+                              const Eigen::VectorXd& mean_of);
 
     int vertex_count_ = 0;
     double total_area_ = 0.0;

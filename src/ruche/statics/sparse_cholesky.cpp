@@ -136,8 +136,7 @@ std::vector<int> nested_dissection(std::span<const int> start, std::span<const i
     return order;
 }
 
-std::vector<int> elimination_order(const Model& model) {
-    const NodePattern& pattern = model.pattern();
+std::vector<int> vertex_elimination_order(const NodePattern& pattern) {
     const int vertices = pattern.vertex_count();
     std::vector<int> start(vertices + 1, 0);
     const auto for_each_pair = [&](auto&& use) {
@@ -153,8 +152,12 @@ std::vector<int> elimination_order(const Model& model) {
     std::vector<int> next(start.begin(), start.end() - 1);
     for_each_pair(
         [&](int row, int column) { neighbours[next[row]++] = column, neighbours[next[column]++] = row; });
-    const std::vector<int> vertex_order = nested_dissection(start, neighbours);
+    return nested_dissection(start, neighbours);
+}
 
+std::vector<int> elimination_order(const Model& model, std::span<const int> vertex_order) {
+    const NodePattern& pattern = model.pattern();
+    const int vertices = pattern.vertex_count();
     std::vector<int> rank(vertices);
     for (int k = 0; k < vertices; ++k) rank[vertex_order[k]] = k;
     std::vector<std::vector<int>> unknowns_before(vertices);

@@ -43,8 +43,11 @@ class SparseCholesky {
 /// loops).
 std::vector<int> nested_dissection(std::span<const int> start, std::span<const int> neighbours);
 
-/// Elimination order of a model's unknowns: nested dissection of the vertex graph; each edge unknown goes
-/// right before the first of its four vertices, where it causes no fill of its own.
-std::vector<int> elimination_order(const Model& model);
+/// Elimination order of the vertices: nested dissection of the pattern's vertex graph.
+std::vector<int> vertex_elimination_order(const NodePattern& pattern);
+
+/// Elimination order of a model's unknowns: that of the vertices, and each edge unknown right before the
+/// first of its four vertices, where it causes no fill of its own.
+std::vector<int> elimination_order(const Model& model, std::span<const int> vertex_order);
 
 }  // namespace ruche

@@ -286,3 +286,43 @@ TEST_CASE("model: hopeless states are not finite or large, at every order, and n
         model.energy_density(x);
     }
 }
+
+TEST_CASE("model: a patch has the derivatives of the whole sheet and the differences of its energy") {
+    for (const SetUp& set_up : set_ups()) {
+        CAPTURE(set_up.name);
+        const Model model(set_up.input);
+        Eigen::VectorXd x = rolled(model, {});
+        std::vector<char> held(model.size(), 0);
+        held[3 * 3 + 2] = 1;
+        std::vector<int> nodes = {3, 0, 2};  // the smallest of the sheets has four vertices
+        if (model.pattern().node_count() > model.vertex_count()) nodes.push_back(model.vertex_count());
+        const Model::Patch patch = model.patch(nodes, held);
+        REQUIRE(patch.size() == static_cast<int>(8 + (nodes.size() - 3)));
+        for (const Order order : {Order::gradient, Order::hessian, Order::gauss_newton}) {
+            DenseSums part;
+            AssembledSums whole;
+            model.evaluate(patch, x, order, part);
+            model.evaluate(x, order, whole);
+            const double force = whole.gradient.cwiseAbs().maxCoeff();
+            for (int i = 0; i < patch.size(); ++i)
+                CHECK(std::abs(part.gradient[i] - whole.gradient[patch.unknowns()[i]]) < 1e-13 * force);
+            if (!wants_hessian(order)) continue;
+            const Eigen::SparseMatrix<double> full = model.pattern().full_matrix(whole.hessian);
+            const double stiffness = part.hessian.cwiseAbs().maxCoeff();
+            for (int i = 0; i < patch.size(); ++i) {
+                for (int j = 0; j < patch.size(); ++j) {
+                    const double expected = full.coeff(patch.unknowns()[i], patch.unknowns()[j]);
+                    CHECK(std::abs(part.hessian(i, j) - expected) < 1e-13 * stiffness);
+                }
+            }
+        }
+        DenseSums none;
+        const double part_before = model.evaluate(patch, x, Order::value, none);
+        const double whole_before = model.energy(x);
+        for (int i = 0; i < patch.size(); ++i) x[patch.unknowns()[i]] += 0.01 * std::cos(i);
+        const double change = model.energy(x) - whole_before;
+        CHECK(change != 0.0);
+        CHECK(model.evaluate(patch, x, Order::value, none) - part_before ==
+              doctest::Approx(change).epsilon(1e-9));
+    }
+}

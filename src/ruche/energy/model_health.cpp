@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "ruche/energy/model_parts.hpp"
+
+namespace ruche {
+
+double Model::typical_force(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    double sum = 0.0;
+    const auto add = [&](const auto& term) {
+        for (int e = 0; e < term.element_count(); ++e) {
+            sum += term.evaluate(e, unknowns, Order::gradient).gradient.template head<9>().squaredNorm();
+        }
+    };
+    add(parts_->membrane->term());
+    add(parts_->laminate->term());
+    return std::sqrt(sum / (3.0 * parts_->input.mesh.triangle_count()));
+}
+
+Health Model::health(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    const TriangleMesh& mesh = parts_->input.mesh;
+    constexpr double degrees = 180.0 / std::numbers::pi;
+    Health health;
+    health.max_strain_margin = -infinity;
+    const FabricMembrane& membrane = parts_->membrane->term();
+    for (int e = 0; e < membrane.element_count(); ++e) {
+        const Vec3 strain = membrane.green_strain(e, unknowns);
+        bool beyond = false;
+        for (int i = 0; i < 2; ++i) {
+            health.max_strain_margin =
+                std::max(health.max_strain_margin, strain[i] - membrane.law().gamma(i));
+            beyond = beyond || strain[i] > membrane.law().strain_limit(i);
+        }
+        health.beyond_law += beyond ? 1 : 0;
+    }
+    const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const Triangle& tri = mesh.triangles[t];
+        const Vec3 a = unknowns.position(tri[0]);
+        const double area = 0.5 * (unknowns.position(tri[1]) - a).cross(unknowns.position(tri[2]) - a).norm();
+        const double rest = layout_area(mesh, t) * (parts_->input.print[t].bare() ? relaxed_share : 1.0);
+        health.min_area_ratio = std::min(health.min_area_ratio, area / rest);
+    }
+    for (const Edge& edge : parts_->edges.edges) {
+        if (edge.on_boundary()) continue;
+        const Vec3 a = unknowns.position(edge.vertex[0]);
+        const Vec3 b = unknowns.position(edge.vertex[1]);
+        const Vec3 c = unknowns.position(mesh.triangles[edge.triangle[0]][edge.local[0]]);
+        const Vec3 d = unknowns.position(mesh.triangles[edge.triangle[1]][edge.local[1]]);
+        const double theta = dihedral_angle(dihedral_frame(a, b, c), dihedral_frame(b, a, d));
+        health.max_dihedral_deg = std::max(health.max_dihedral_deg, std::abs(theta) * degrees);
+    }
+    const LaminateTerm& laminate = parts_->laminate->term();
+    for (int e = 0; e < laminate.element_count(); ++e) {
+        health.max_edge_rotation_deg =
+            std::max(health.max_edge_rotation_deg, laminate.max_normal_rotation(e, unknowns) * degrees);
+    }
+    return health;
+}
+
+}  // namespace ruche

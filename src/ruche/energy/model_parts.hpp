@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "ruche/energy/fabric_bending.hpp"
+#include "ruche/energy/fabric_membrane.hpp"
+#include "ruche/energy/laminate_term.hpp"
+#include "ruche/energy/loads.hpp"
+#include "ruche/energy/model.hpp"
+
+namespace ruche {
+
+/// What a Model is made of; for the files that implement it.
+struct Model::Parts {
+    ModelInput input;
+    MeshEdges edges;
+    std::vector<int> bare;                          // triangle of each membrane element
+    std::vector<int> printed;                       // triangle of each laminate element
+    std::vector<std::array<int, 4>> edge_unknowns;  // vertices around each
+    NodePattern pattern;
+    std::unique_ptr<TermAssembly<FabricMembrane>> membrane;
+    std::unique_ptr<TermAssembly<FabricBending>> bending;
+    std::unique_ptr<TermAssembly<LaminateTerm>> laminate;
+    std::unique_ptr<TermAssembly<TableContact>> table;
+    Eigen::VectorXd dead_load;  // N, on positions: gravity and nodal forces
+
+    Unknowns unknowns(const Eigen::VectorXd& x) const { return {x.data(), input.mesh.vertex_count()}; }
+
+    template <class Visit>
+    void for_each_term(const Visit& visit) const {
+        visit(*membrane), visit(*bending), visit(*laminate), visit(*table);
+    }
+
+    void build_elastic_terms();
+    void build_loads();
+};
+
+}  // namespace ruche

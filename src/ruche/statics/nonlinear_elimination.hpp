@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ruche/energy/model.hpp"
+
+namespace ruche {
+
+/// Between two Newton steps of a whole sheet: brings the few spots where the residual is concentrated
+/// (corners of strips, where fabric is near the limit of its law) to their own equilibrium, all else held in
+/// place. Without it those spots decide how many steps the whole sheet needs: inside a logarithmic barrier
+/// Newton's method only doubles the distance to the limit with each step. (Nonlinear elimination: Lanzkron,
+/// Rose, Wilkes, SIAM J. Sci. Comput. 17, 1996; Cai, Li, SIAM J. Sci. Comput. 33, 2011.)
+class NonlinearElimination {
+  public:
+    /// `held`: one flag per unknown that a support fixes. Both must outlive this.
+    NonlinearElimination(const Model& model, const std::vector<char>& held);
+
+    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot.
+    bool operator()(Eigen::VectorXd& x, const Eigen::VectorXd& gradient);
+
+  private:
+    std::vector<std::vector<int>> spots(const Eigen::VectorXd& gradient);
+
+    const Model& model_;
+    const std::vector<char>& held_;
+    std::vector<std::vector<int>> edge_unknowns_of_vertex_;  // nodes
+    std::vector<double> force_;                              // per vertex, N
+    std::vector<int> parent_;  // of the union-find forest over nodes; -1 = not in a spot
+};
+
+}  // namespace ruche

@@ -1,0 +1,72 @@
+#include "ruche/statics/nonlinear_elimination.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "energy/samples.hpp"
+#include "ruche/statics/equilibrium.hpp"
+
+using namespace ruche;
+using namespace ruche::test;
+
+namespace {
+
+/// A sheet of 20 x 20 cells, bare but for a strip, at rest except that one vertex was pulled out of place.
+struct Disturbed {
+    static constexpr int cells = 20;
+    Model model;
+    Eigen::VectorXd rest;
+    Eigen::VectorXd x;
+    int vertex = -1;
+
+    Disturbed() : model(input()), rest(solve(model).x), x(rest) {
+        const auto& vertices = model.input().mesh.vertices;
+        for (int v = 0; v < model.vertex_count(); ++v) {
+            if (vertex < 0 || (vertices[v] - Vec2(5, 5)).norm() < (vertices[vertex] - Vec2(5, 5)).norm())
+                vertex = v;
+        }
+        x.segment<3>(3 * vertex) += Vec3(0.25, -0.15, 0.2);
+    }
+    static ModelInput input() {
+        ModelInput sheet;
+        sheet.mesh = random_grid(cells, cells, 0.2, 5);
+        for (const Triangle& tri : sheet.mesh.triangles) {
+            const Vec2 centre =
+                (sheet.mesh.vertices[tri[0]] + sheet.mesh.vertices[tri[1]] + sheet.mesh.vertices[tri[2]]) /
+                3.0;
+            sheet.print.push_back({.front = centre.x() > 12 && centre.x() < 14 ? 0.8 : 0.0});
+        }
+        sheet.prestretch = {1.4, 1.4};
+        return sheet;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("nonlinear elimination: a vertex out of place is brought back and nothing else moves far") {
+    const Disturbed sheet;
+    Eigen::VectorXd x = sheet.x;
+    const std::vector<char> held(sheet.model.size(), 0);
+    NonlinearElimination eliminate(sheet.model, held);
+    REQUIRE(sheet.model.energy(x) > sheet.model.energy(sheet.rest) + 1e-3);
+    for (int round = 0; round < 6; ++round) {
+        const double before = sheet.model.energy(x);
+        CHECK(eliminate(x, sheet.model.gradient(x)));
+        CHECK(sheet.model.energy(x) <= before);
+    }
+    // Round by round the neighbours take part too; in the end the spot is where it came from.
+    CHECK((x - sheet.rest).cwiseAbs().maxCoeff() < 0.02 * (sheet.x - sheet.rest).cwiseAbs().maxCoeff());
+}
+
+TEST_CASE("nonlinear elimination: what a support holds stays") {
+    const Disturbed sheet;
+    Eigen::VectorXd x = sheet.x;
+    std::vector<char> held(sheet.model.size(), 0);
+    for (int c = 0; c < 3; ++c) held[3 * sheet.vertex + c] = 1;
+    Eigen::VectorXd gradient = sheet.model.gradient(x);
+    for (int c = 0; c < 3; ++c) gradient[3 * sheet.vertex + c] = 0.0;
+    NonlinearElimination eliminate(sheet.model, held);
+    CHECK(eliminate(x, gradient));
+    CHECK(x.segment<3>(3 * sheet.vertex) == sheet.x.segment<3>(3 * sheet.vertex));
+}
