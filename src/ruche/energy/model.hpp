@@ -145,6 +145,9 @@ class Model {
     /// force, N.
     double typical_force(const Eigen::VectorXd& x) const;
 
+    /// How many bare elements are in the linear extension of the fabric's law.
+    int elements_beyond_law(const Eigen::VectorXd& x) const;
+
     /// Everything in Health but self-intersections.
     Health health(const Eigen::VectorXd& x) const;
 

@@ -19,6 +19,19 @@ double Model::typical_force(const Eigen::VectorXd& x) const {
     return std::sqrt(sum / (3.0 * parts_->input.mesh.triangle_count()));
 }
 
+int Model::elements_beyond_law(const Eigen::VectorXd& x) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    const FabricMembrane& membrane = parts_->membrane->term();
+    int count = 0;
+    for (int e = 0; e < membrane.element_count(); ++e) {
+        const Vec3 strain = membrane.green_strain(e, unknowns);
+        const bool beyond =
+            strain[0] > membrane.law().strain_limit(0) || strain[1] > membrane.law().strain_limit(1);
+        count += beyond ? 1 : 0;
+    }
+    return count;
+}
+
 Health Model::health(const Eigen::VectorXd& x) const {
     const Unknowns unknowns = parts_->unknowns(x);
     const TriangleMesh& mesh = parts_->input.mesh;
@@ -28,14 +41,11 @@ Health Model::health(const Eigen::VectorXd& x) const {
     const FabricMembrane& membrane = parts_->membrane->term();
     for (int e = 0; e < membrane.element_count(); ++e) {
         const Vec3 strain = membrane.green_strain(e, unknowns);
-        bool beyond = false;
-        for (int i = 0; i < 2; ++i) {
+        for (int i = 0; i < 2; ++i)
             health.max_strain_margin =
                 std::max(health.max_strain_margin, strain[i] - membrane.law().gamma(i));
-            beyond = beyond || strain[i] > membrane.law().strain_limit(i);
-        }
-        health.beyond_law += beyond ? 1 : 0;
     }
+    health.beyond_law = elements_beyond_law(x);
     const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Triangle& tri = mesh.triangles[t];

@@ -168,6 +168,16 @@ Json shape_of(const Result& result) {
             {"printed_area_mm2", m.printed_area}};
 }
 
+Json levels_of(const Equilibrium& equilibrium) {
+    Json levels = Json::array();
+    for (const LevelEffort& level : equilibrium.levels) {
+        levels.push_back({{"triangles", level.triangles},
+                          {"iterations", level.iterations},
+                          {"factorizations", level.factorizations}});
+    }
+    return levels;
+}
+
 }  // namespace
 
 std::string report_json(const Result& result) {
@@ -178,7 +188,8 @@ std::string report_json(const Result& result) {
                     {"unknowns", equilibrium.x.size()}};
     json["solver"] = {{"iterations", equilibrium.iterations},
                       {"factorizations", equilibrium.factorizations},
-                      {"seconds", equilibrium.seconds}};
+                      {"seconds", equilibrium.seconds},
+                      {"levels", levels_of(equilibrium)}};
     json["health"] = health_of(result);
     json["shape"] = shape_of(result);
     json["strips"] = strips_of(result);

@@ -6,15 +6,14 @@
 #include <cmath>
 #include <cstring>
 #include <map>
-#include <optional>
 #include <sstream>
 #include <type_traits>
 
 #include "ruche/core/atomic_file.hpp"
 #include "ruche/core/document.hpp"
-#include "ruche/meshing/point_locator.hpp"
 #include "ruche/scene/build.hpp"
 #include "ruche/scene/write_scene.hpp"
+#include "ruche/statics/transfer.hpp"
 
 namespace ruche {
 
@@ -233,50 +232,10 @@ static bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
     return a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
-/// The point of the mesh nearest to a point of the plane; null for an empty mesh.
-static std::optional<MeshPoint> nearest(const PointLocator& locator, const Vec2& point, double diameter) {
-    double reach = diameter / 256;
-    std::optional<MeshPoint> found;
-    while (!found && reach < 2 * diameter) {
-        found = locator.find(point, reach);
-        reach *= 2;
-    }
-    return found;
-}
-
-/// Where the state takes a point of the plane: interpolated on its triangle; beyond the layout the sheet goes
-/// on flat from the nearest triangle.
-static Vec3 carried(const State& state, const MeshPoint& on_mesh, const Vec2& point) {
-    const Triangle& corners = state.layout.triangles[static_cast<std::size_t>(on_mesh.triangle)];
-    const auto flat = [&](std::size_t k) {
-        return state.layout.vertices[static_cast<std::size_t>(corners[k])];
-    };
-    const auto shape = [&](std::size_t k) -> Vec3 {
-        return state.x.segment<3>(Eigen::Index{3} * corners[k]);
-    };
-    Mat2 edges;
-    edges << flat(1) - flat(0), flat(2) - flat(0);
-    const Vec2 weights = edges.inverse() * (point - flat(0));
-    return shape(0) + weights[0] * (shape(1) - shape(0)) + weights[1] * (shape(2) - shape(0));
-}
-
-Eigen::VectorXd start_from(const State& state, const TriangleMesh& layout, int size) {
-    if (same_mesh(state.layout, layout) && state.x.size() == size) return state.x;
-    Vec2 low = layout.vertices.front();
-    Vec2 high = low;
-    for (const std::vector<Vec2>* vertices : {&layout.vertices, &state.layout.vertices})
-        for (const Vec2& vertex : *vertices) {
-            low = low.cwiseMin(vertex);
-            high = high.cwiseMax(vertex);
-        }
-    const PointLocator locator(state.layout);
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(size);
-    for (int v = 0; v < layout.vertex_count(); ++v) {
-        const Vec2& vertex = layout.vertices[static_cast<std::size_t>(v)];
-        if (const std::optional<MeshPoint> point = nearest(locator, vertex, (high - low).norm()))
-            x.segment<3>(Eigen::Index{3} * v) = carried(state, *point, vertex);
-    }
-    return x;
+Eigen::VectorXd start_from(const State& state, const Model& model) {
+    if (same_mesh(state.layout, model.input().mesh) && state.x.size() == model.size()) return state.x;
+    Retraction retraction(model);
+    return transfer({.layout = state.layout, .print = {}, .x = state.x}, model, retraction);
 }
 
 }  // namespace ruche

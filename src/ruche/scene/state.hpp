@@ -42,9 +42,8 @@ State read_state(const std::string& path);
 Eigen::VectorXd resume_from(const State& state, const Scene& scene, const ModelInput& model,
                             const std::string& path);
 
-/// A start on another mesh or another scene: the state's shape, taken directly for the same mesh, else
-/// interpolated on the layout (outside it, the nearest triangle's motion is carried on). `size` is the
-/// model's number of unknowns; edge unknowns are zero unless the mesh is the same.
-Eigen::VectorXd start_from(const State& state, const TriangleMesh& layout, int size);
+/// A start on another mesh or for another scene: the state's unknowns for the same mesh, else its shape
+/// carried over (see transfer).
+Eigen::VectorXd start_from(const State& state, const Model& model);
 
 }  // namespace ruche

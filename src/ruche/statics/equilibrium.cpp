@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 
 #include "ruche/core/error.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
@@ -50,7 +51,7 @@ std::string short_number(double value) {
 class Newton {
   public:
     Newton(const Model& model, const SolveOptions& options, const Control& control)
-        : model_(model),
+        : original_(&model),
           options_(options),
           control_(control),
           rigid_(model),
@@ -67,6 +68,7 @@ class Newton {
     }
 
     Equilibrium run(const Eigen::VectorXd& start);
+    Equilibrium run(const LayoutShape& start) { return run(transfer(start, model(), retraction_)); }
 
   private:
     /// rms rotation of a step above which the sheet is "turning" and the Gauss-Newton form is the better
@@ -76,8 +78,8 @@ class Newton {
     void evaluate(Order order) { terms_ = evaluate(x_, order, sums_); }
     /// As the model does, with the supports' reactions taken out of the gradient.
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
-        const EnergyTerms terms = model_.evaluate(x, order, sums);
-        for (int i = 0; i < model_.size(); ++i) {
+        const EnergyTerms terms = model().evaluate(x, order, sums);
+        for (int i = 0; i < model().size(); ++i) {
             if (held_[i]) sums.gradient[i] = 0.0;
         }
         return terms;
@@ -86,7 +88,7 @@ class Newton {
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     /// Mean magnitude of the Hessian's diagonal, N/mm.
     double mean_stiffness() const {
-        const NodePattern& pattern = model_.pattern();
+        const NodePattern& pattern = model().pattern();
         double sum = 0.0;
         for (int node = 0; node < pattern.node_count(); ++node) {
             const int block = pattern.block_offset(node, node);
@@ -94,13 +96,14 @@ class Newton {
                 sum += std::abs(sums_.hessian[block + c * pattern.column_length(node) + c]);
             }
         }
-        return sum / model_.size();
+        return sum / model().size();
     }
     double energy_scale() const {
         return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
                std::abs(terms_.gravity);
     }
 
+    bool narrow_extension();
     bool factorize(Order order, double shift = 0.0);
     bool solve_step(Order order);
     bool line_search();
@@ -108,7 +111,10 @@ class Newton {
     bool leave_saddle();
     void report() const;
 
-    const Model& model_;
+    const Model& model() const { return narrowed_ ? *narrowed_ : *original_; }
+
+    const Model* original_;
+    std::optional<Model> narrowed_;  // the same sheet with the narrower linear extension of the law
     SolveOptions options_;
     const Control& control_;
     RigidMotions rigid_;
@@ -130,8 +136,21 @@ class Newton {
     int factorizations_ = 0;
 };
 
+/// Exchanges the model for one with a narrower linear extension when the shape leans on it.
+bool Newton::narrow_extension() {
+    const double narrow = options_.narrow_log_extension;
+    if (narrow == 0.0 || narrowed_ || narrow >= model().input().options.log_extension ||
+        model().elements_beyond_law(x_) == 0) {
+        return false;
+    }
+    ModelInput input = model().input();
+    input.options.log_extension = narrow;
+    narrowed_.emplace(std::move(input));
+    return true;
+}
+
 bool Newton::factorize(Order order, double shift) {
-    const NodePattern& pattern = model_.pattern();
+    const NodePattern& pattern = model().pattern();
     matrix_ = sums_.hessian;
     const auto resisting = order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
                                                    : RigidMotions::Resisting::supports;
@@ -148,8 +167,8 @@ bool Newton::factorize(Order order, double shift) {
     }
     const std::vector<int>& start = pattern.column_start();
     const std::vector<int>& row = pattern.row_index();
-    const bool supported = !model_.input().supports.empty();
-    for (int column = 0; column < model_.size() && (supported || shift != 0.0); ++column) {
+    const bool supported = !model().input().supports.empty();
+    for (int column = 0; column < model().size() && (supported || shift != 0.0); ++column) {
         for (int k = start[column]; k < start[column + 1]; ++k) {
             if (row[k] == column) matrix_[k] += shift;
             if (held_[column] || held_[row[k]]) matrix_[k] = row[k] == column ? 1.0 : 0.0;
@@ -193,7 +212,7 @@ bool Newton::line_search() {
             }
             if (std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
         }
-        const double trial = model_.energy(candidate);
+        const double trial = model().energy(candidate);
         if (std::isfinite(trial) && trial <= energy + 1e-4 * t * slope) {
             x_ = candidate;
             return true;
@@ -207,7 +226,8 @@ void Newton::relax_spots() {
     constexpr double converging = 0.01;
     const double before = residual();
     evaluate(x_, Order::gradient, trial_);
-    if (trial_.gradient.cwiseAbs().maxCoeff() > converging * before) elimination_(x_, trial_.gradient);
+    if (trial_.gradient.cwiseAbs().maxCoeff() > converging * before)
+        elimination_(model(), x_, trial_.gradient);
 }
 
 /// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
@@ -218,10 +238,10 @@ bool Newton::leave_saddle() {
     for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0)
         ready = factorize(Order::hessian, shift);
     if (!ready) return false;
-    Eigen::VectorXd direction(model_.size());
-    for (int i = 0; i < model_.size(); ++i) direction[i] = held_[i] ? 0.0 : noise(options_.seed + 77, i);
+    Eigen::VectorXd direction(model().size());
+    for (int i = 0; i < model().size(); ++i) direction[i] = held_[i] ? 0.0 : noise(options_.seed + 77, i);
     for (int i = 0; i < 20; ++i) direction = cholesky_.solve(direction.normalized()).col(0);
-    direction /= direction.head(3 * model_.vertex_count()).cwiseAbs().maxCoeff();
+    direction /= direction.head(3 * model().vertex_count()).cwiseAbs().maxCoeff();
     if (direction.dot(sums_.gradient) > 0.0) direction = -direction;
     const double energy = terms_.total();
     double best_energy = energy - 1e-14 * energy_scale();
@@ -229,7 +249,7 @@ bool Newton::leave_saddle() {
     for (double length = 4.0; length > 1e-4; length *= 0.5) {
         for (const double sign : {1.0, -1.0}) {
             const Eigen::VectorXd candidate = retraction_(x_, direction, sign * length);
-            const double trial = model_.energy(candidate);
+            const double trial = model().energy(candidate);
             if (std::isfinite(trial) && trial < best_energy) {
                 best_energy = trial;
                 best = candidate;
@@ -259,6 +279,9 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
         const bool exact = taut_ || (rotation <= turning && gauss_newton_left == 0);
         const Order order = exact ? Order::hessian : positive_order();
         evaluate(order);
+        constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
+        if ((rotation < settled || residual() <= options_.residual_tolerance_n) && narrow_extension())
+            evaluate(order);
         report();
         result.residual = residual();
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
@@ -283,6 +306,10 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             }
             rotation = turning;
             continue;
+        }
+        if (rotation < options_.enough_rotation) {
+            result.message = "close enough for a start";
+            break;
         }
         if (iterations_ >= options_.max_iterations) {
             result.message = "not converged after " + std::to_string(iterations_) + " iterations";
@@ -315,10 +342,11 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
     }
     result.x = x_;
     result.energy = terms_;
-    result.typical_force = model_.typical_force(x_);
+    result.typical_force = model().typical_force(x_);
     result.iterations = iterations_;
     result.factorizations = factorizations_;
-    result.health = model_.health(x_);
+    result.health = model().health(x_);
+    result.log_extension = model().input().options.log_extension;
     return result;
 }
 
@@ -342,14 +370,27 @@ void require_held(const Model& model) {
 
 }  // namespace
 
-Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
-                  const Eigen::VectorXd* start) {
+template <class Start>
+static Equilibrium timed_solve(const Model& model, const SolveOptions& options, const Control& control,
+                               const Start& start) {
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
-    Newton newton(model, options, control);
-    Equilibrium result = newton.run(start != nullptr ? *start : noisy_start(model, options));
+    Equilibrium result = Newton(model, options, control).run(start);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.levels = {{.triangles = model.input().mesh.triangle_count(),
+                      .iterations = result.iterations,
+                      .factorizations = result.factorizations}};
     return result;
+}
+
+Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
+                  const Eigen::VectorXd* start) {
+    return timed_solve(model, options, control, start != nullptr ? *start : noisy_start(model, options));
+}
+
+Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
+                  const LayoutShape& start) {
+    return timed_solve(model, options, control, start);
 }
 
 }  // namespace ruche

@@ -7,6 +7,7 @@
 #include "ruche/core/control.hpp"
 #include "ruche/core/fields.hpp"
 #include "ruche/energy/model.hpp"
+#include "ruche/statics/transfer.hpp"
 
 namespace ruche {
 
@@ -17,12 +18,26 @@ struct SolveOptions {
     double noise_mm = 1e-3;     ///< its size, limited to 1 % of the element size
     bool deterministic = true;  ///< same bits at any thread count
     int threads = 0;            ///< 0 = all cores
+    bool coarse_start = true;   ///< simulate() solves on coarser meshes first
+    /// Not an option of scenes: stop, without a certificate, when a step turns the sheet by less than this
+    /// (root mean square, rad). For shapes that are only a start.
+    double enough_rotation = 0.0;
+    /// Neither: where the shape leans on the linear extension of the fabric's law, go on with this narrower
+    /// one (model.log_extension); 0 = keep the model's.
+    double narrow_log_extension = 0.0;
 };
 
 template <>
 std::span<const Field<SolveOptions>> fields<SolveOptions>();
 
 enum class SolveStatus { converged, not_converged, interrupted };
+
+/// What a solve on one mesh took.
+struct LevelEffort {
+    int triangles = 0;
+    int iterations = 0;
+    int factorizations = 0;
+};
 
 struct Equilibrium {
     Eigen::VectorXd x;  ///< all unknowns: positions row by row, then edge unknowns
@@ -31,9 +46,11 @@ struct Equilibrium {
     EnergyTerms energy;
     double residual = 0.0;       ///< largest component of the gradient over all free unknowns, N
     double typical_force = 0.0;  ///< to compare it with: rms over elements of the internal nodal force, N
-    int iterations = 0;
+    int iterations = 0;          ///< on this mesh
     int factorizations = 0;
-    double seconds = 0.0;
+    std::vector<LevelEffort> levels;  ///< from the coarsest mesh to this one
+    double seconds = 0.0;             ///< of all levels
+    double log_extension = 0.0;       ///< of the law that it is an equilibrium of
     Health health;
     std::string message;  ///< why it stopped, for a person
 };
@@ -45,5 +62,9 @@ struct Equilibrium {
 /// little noise. Throws InputError for gravity that nothing holds, std::bad_alloc.
 [[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options = {},
                                 const Control& control = {}, const Eigen::VectorXd* start = nullptr);
+
+/// The same from the shape on another mesh of the layout.
+[[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
+                                const LayoutShape& start);
 
 }  // namespace ruche

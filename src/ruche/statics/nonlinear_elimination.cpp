@@ -66,8 +66,7 @@ bool relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
 }  // namespace
 
 NonlinearElimination::NonlinearElimination(const Model& model, const std::vector<char>& held)
-    : model_(model),
-      held_(held),
+    : held_(held),
       edge_unknowns_of_vertex_(model.vertex_count()),
       force_(model.vertex_count()),
       parent_(model.pattern().node_count()) {
@@ -79,8 +78,9 @@ NonlinearElimination::NonlinearElimination(const Model& model, const std::vector
 
 /// Nodes of each spot: vertices under much force and the edge unknowns at them, joined where an element
 /// touches both.
-std::vector<std::vector<int>> NonlinearElimination::spots(const Eigen::VectorXd& gradient) {
-    const int vertices = model_.vertex_count();
+std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pattern,
+                                                          const Eigen::VectorXd& gradient) {
+    const int vertices = pattern.vertex_count();
     for (int v = 0; v < vertices; ++v) force_[v] = gradient.segment<3>(3 * v).norm();
     std::vector<double> sorted = force_;
     const auto quantile = sorted.begin() + static_cast<std::ptrdiff_t>((1.0 - most_vertices) * vertices);
@@ -98,14 +98,14 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const Eigen::VectorXd&
         while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
         return node;
     };
-    for (int node = 0; node < model_.pattern().node_count(); ++node) {
+    for (int node = 0; node < pattern.node_count(); ++node) {
         if (parent_[node] < 0) continue;
-        for (const int other : model_.pattern().rows_of(node)) {
+        for (const int other : pattern.rows_of(node)) {
             if (parent_[other] >= 0) parent_[root(other)] = root(node);
         }
     }
     std::map<int, std::vector<int>> by_root;
-    for (int node = 0; node < model_.pattern().node_count(); ++node) {
+    for (int node = 0; node < pattern.node_count(); ++node) {
         if (parent_[node] >= 0) by_root[root(node)].push_back(node);
     }
     std::vector<std::vector<int>> found;
@@ -115,12 +115,13 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const Eigen::VectorXd&
     return found;
 }
 
-bool NonlinearElimination::operator()(Eigen::VectorXd& x, const Eigen::VectorXd& gradient) {
-    const std::vector<std::vector<int>> all = spots(gradient);
+bool NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x,
+                                      const Eigen::VectorXd& gradient) {
+    const std::vector<std::vector<int>> all = spots(model.pattern(), gradient);
     std::atomic<bool> moved = false;
     // No element touches two spots: they do not see each other move.
     parallel_for(all.size(), [&](std::size_t i) {
-        if (relax(model_, model_.patch(all[i], held_), x)) moved = true;
+        if (relax(model, model.patch(all[i], held_), x)) moved = true;
     });
     return moved;
 }

@@ -14,16 +14,16 @@ namespace ruche {
 /// Rose, Wilkes, SIAM J. Sci. Comput. 17, 1996; Cai, Li, SIAM J. Sci. Comput. 33, 2011.)
 class NonlinearElimination {
   public:
-    /// `held`: one flag per unknown that a support fixes. Both must outlive this.
+    /// `held`: one flag per unknown that a support fixes; must outlive this.
     NonlinearElimination(const Model& model, const std::vector<char>& held);
 
-    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot.
-    bool operator()(Eigen::VectorXd& x, const Eigen::VectorXd& gradient);
+    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot. `model` is the
+    /// one given to the constructor or differs from it in the material only.
+    bool operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient);
 
   private:
-    std::vector<std::vector<int>> spots(const Eigen::VectorXd& gradient);
+    std::vector<std::vector<int>> spots(const NodePattern& pattern, const Eigen::VectorXd& gradient);
 
-    const Model& model_;
     const std::vector<char>& held_;
     std::vector<std::vector<int>> edge_unknowns_of_vertex_;  // nodes
     std::vector<double> force_;                              // per vertex, N

@@ -16,6 +16,8 @@ std::span<const Field<SolveOptions>> fields<SolveOptions>() {
          "Size of that noise, never more than 1 % of the element size. With 0 symmetric fabric stays flat."},
         {"deterministic", &S::deterministic, "", -infinity, infinity,
          "The same bits at any number of threads."},
+        {"coarse_start", &S::coarse_start, "", -infinity, infinity,
+         "Solve on coarser meshes of the drawing first, each the start for the next finer one."},
         {"threads", &S::threads, "", 0, 1024, "Threads to use; 0 takes every core."},
     };
     return table;

@@ -52,7 +52,7 @@ TEST_CASE("nonlinear elimination: a vertex out of place is brought back and noth
     REQUIRE(sheet.model.energy(x) > sheet.model.energy(sheet.rest) + 1e-3);
     for (int round = 0; round < 6; ++round) {
         const double before = sheet.model.energy(x);
-        CHECK(eliminate(x, sheet.model.gradient(x)));
+        CHECK(eliminate(sheet.model, x, sheet.model.gradient(x)));
         CHECK(sheet.model.energy(x) <= before);
     }
     // Round by round the neighbours take part too; in the end the spot is where it came from.
@@ -67,6 +67,6 @@ TEST_CASE("nonlinear elimination: what a support holds stays") {
     Eigen::VectorXd gradient = sheet.model.gradient(x);
     for (int c = 0; c < 3; ++c) gradient[3 * sheet.vertex + c] = 0.0;
     NonlinearElimination eliminate(sheet.model, held);
-    CHECK(eliminate(x, gradient));
+    CHECK(eliminate(sheet.model, x, gradient));
     CHECK(x.segment<3>(3 * sheet.vertex) == sheet.x.segment<3>(3 * sheet.vertex));
 }

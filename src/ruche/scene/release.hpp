@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "ruche/core/control.hpp"
+#include "ruche/meshing/print_mesh.hpp"
+#include "ruche/scene/scene.hpp"
+#include "ruche/statics/equilibrium.hpp"
+
+namespace ruche {
+
+/// The released sheet and the model it is an equilibrium of.
+struct Release {
+    Model model;
+    Equilibrium equilibrium;
+    std::vector<std::string> warnings;
+};
+
+/// Releases a scene's sheet: from coarser meshes of its pattern to the given one unless `start` (all
+/// unknowns) is given or something holds the sheet; lays it on the table if there is one; where the shape
+/// leans on the linear extension of the fabric's law, goes on with the paper's much steeper one.
+[[nodiscard]] Release release(const Scene& scene, const PrintMesh& layout, const Control& control,
+                              const Eigen::VectorXd* start = nullptr);
+
+}  // namespace ruche
