@@ -75,7 +75,6 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     const Eigen::Matrix<double, 3, 9> weighted = in_lengths * lengths;
     local.hessian.noalias() = lengths.transpose() * weighted;
     if (order == Order::hessian) add_edge_length_curvature(slopes, local.hessian);
-    if (order == Order::gauss_newton_taut) add_edge_length_curvature(slopes.cwiseMax(0.0), local.hessian);
     return local;
 }
 

@@ -178,10 +178,6 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     }
     const Eigen::Matrix<double, 6, 21> weighted = in_measures * measures;
     local.hessian.noalias() = measures.transpose() * weighted;
-    if (order == Order::gauss_newton_taut) {
-        const Vec3 tension = slopes.head<3>().cwiseMax(0.0);
-        add_edge_length_curvature(tension, local.hessian);
-    }
     if (order != Order::hessian) return local;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);

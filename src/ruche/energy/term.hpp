@@ -9,11 +9,9 @@
 
 namespace ruche {
 
-/// How far to differentiate. The last two fill the Hessian with a positive semidefinite part of it:
-/// `gauss_newton` with the material's tangent in strain space between first derivatives, no second
-/// derivatives of the strains; `gauss_newton_taut` also with the stiffness of edges in tension (dW/dL > 0),
-/// which is what holds a sheet that supports or loads keep taut.
-enum class Order { value, gradient, hessian, gauss_newton, gauss_newton_taut };
+/// How far to differentiate. `gauss_newton` fills the Hessian with a positive semidefinite part of it: the
+/// material's tangent in strain space between first derivatives, no second derivatives of the strains.
+enum class Order { value, gradient, hessian, gauss_newton };
 
 constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }
 

@@ -100,9 +100,8 @@ Equilibrium first_equilibrium(const Scene& scene, const PrintMesh& layout, const
 
 }  // namespace
 
-Release release(const Scene& scene, const PrintMesh& layout, const Control& control,
+Release release(const Scene& scene, const PrintMesh& layout, Model model, const Control& control,
                 const Eigen::VectorXd* start) {
-    Model model(scene_model(scene, layout));
     Equilibrium end = first_equilibrium(scene, layout, model, control, start);
     std::vector<std::string> warnings;
     if (end.log_extension != scene.model.log_extension) {

@@ -18,10 +18,11 @@ struct Release {
     std::vector<std::string> warnings;
 };
 
-/// Releases a scene's sheet: from coarser meshes of its pattern to the given one unless `start` (all
-/// unknowns) is given or something holds the sheet; lays it on the table if there is one; where the shape
-/// leans on the linear extension of the fabric's law, goes on with the paper's much steeper one.
-[[nodiscard]] Release release(const Scene& scene, const PrintMesh& layout, const Control& control,
-                              const Eigen::VectorXd* start = nullptr);
+/// Releases a scene's sheet, whose layout and model are given: from coarser meshes of its pattern to the
+/// given one unless `start` (all unknowns) is given or something holds the sheet; lays it on the table if
+/// there is one; where the shape leans on the linear extension of the fabric's law, goes on with the paper's
+/// much steeper one.
+[[nodiscard]] Release release(const Scene& scene, const PrintMesh& layout, Model model,
+                              const Control& control, const Eigen::VectorXd* start = nullptr);
 
 }  // namespace ruche

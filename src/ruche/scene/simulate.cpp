@@ -56,6 +56,7 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
     result.warnings.insert(result.warnings.end(), result.layout.warnings.begin(),
                            result.layout.warnings.end());
     const TriangleMesh& mesh = result.layout.mesh;
+    Model model(scene_model(scene, result.layout));
     result.seconds["mesh"] = watch.lap();
     control.say({"mesh", 1.0,
                  std::to_string(mesh.triangle_count()) + " triangles, " +
@@ -63,10 +64,11 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
 
     Eigen::VectorXd from;
     if (start.state != nullptr) {
-        from = start.resume ? resume_from(*start.state, scene, scene_model(scene, result.layout), start.path)
-                            : start_from(*start.state, Model(scene_model(scene, result.layout)));
+        from = start.resume ? resume_from(*start.state, scene, model.input(), start.path)
+                            : start_from(*start.state, model);
     }
-    Release released = release(scene, result.layout, control, from.size() > 0 ? &from : nullptr);
+    Release released =
+        release(scene, result.layout, std::move(model), control, from.size() > 0 ? &from : nullptr);
     result.equilibrium = std::move(released.equilibrium);
     result.warnings.insert(result.warnings.end(), released.warnings.begin(), released.warnings.end());
     result.seconds["release"] = watch.lap();

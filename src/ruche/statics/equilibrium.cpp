@@ -61,7 +61,7 @@ class Newton {
                     elimination_order(model, vertex_order_)),
           held_(model.size(), 0),
           elimination_(model, held_),
-          taut_(!model.input().supports.empty() || !model.input().forces.empty()) {
+          loaded_(!model.input().supports.empty() || !model.input().forces.empty()) {
         for (const Support& support : model.input().supports) {
             for (int c = 0; c < 3; ++c) held_[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
         }
@@ -84,7 +84,6 @@ class Newton {
         }
         return terms;
     }
-    Order positive_order() const { return taut_ ? Order::gauss_newton_taut : Order::gauss_newton; }
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     /// Mean magnitude of the Hessian's diagonal, N/mm.
     double mean_stiffness() const {
@@ -123,8 +122,7 @@ class Newton {
     SparseCholesky cholesky_;
     std::vector<char> held_;
     NonlinearElimination elimination_;
-    bool taut_;  // supports or forces may keep the sheet under tension: no release in which it cancels along
-                 // the path
+    bool loaded_;  // supports or forces hold the sheet: what resists there is the geometric stiffness
 
     Eigen::VectorXd x_;
     Eigen::VectorXd step_;
@@ -132,6 +130,7 @@ class Newton {
     AssembledSums trial_;
     EnergyTerms terms_;
     std::vector<double> matrix_;
+    double shift_ = 0.0;  // of the last indefinite Hessian, N/mm
     int iterations_ = 0;
     int factorizations_ = 0;
 };
@@ -178,18 +177,23 @@ bool Newton::factorize(Order order, double shift) {
     return cholesky_.factorize(matrix_);
 }
 
-/// Factorises (evaluating again with the Gauss-Newton form where the exact Hessian is not positive definite)
-/// and solves for the step. False when not even a shifted Gauss-Newton matrix can be factorised.
+/// Factorises and solves for the step. Where the exact Hessian is not positive definite a sheet that nothing
+/// holds falls back on the Gauss-Newton form, whose lack of geometric stiffness the retraction makes up for.
+/// In one that supports or loads hold that stiffness is what resists (a pendulum has no other): there a
+/// multiple of the identity is added, little more than it takes. False when no matrix could be factorised.
 bool Newton::solve_step(Order order) {
     bool ready = factorize(order);
-    if (!ready && order == Order::hessian) {
-        evaluate(positive_order());
-        ready = factorize(positive_order());
-    }
-    if (!ready) {
-        const double mean = mean_stiffness();
+    const double mean = ready ? 0.0 : mean_stiffness();
+    if (!ready && loaded_) {
+        for (shift_ = std::max(0.1 * shift_, 1e-9 * mean); !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
+            ready = factorize(order, shift_);
+    } else if (!ready) {
+        if (order == Order::hessian) {
+            evaluate(Order::gauss_newton);
+            ready = factorize(Order::gauss_newton);
+        }
         for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
-            ready = factorize(positive_order(), shift);
+            ready = factorize(Order::gauss_newton, shift);
     }
     if (ready) step_ = cholesky_.solve(-sums_.gradient);
     return ready && step_.allFinite();
@@ -276,8 +280,8 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
     int escapes = 0;
     bool stalled = false;
     for (;;) {
-        const bool exact = taut_ || (rotation <= turning && gauss_newton_left == 0);
-        const Order order = exact ? Order::hessian : positive_order();
+        const bool exact = loaded_ || (rotation <= turning && gauss_newton_left == 0);
+        const Order order = exact ? Order::hessian : Order::gauss_newton;
         evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
         if ((rotation < settled || residual() <= options_.residual_tolerance_n) && narrow_extension())

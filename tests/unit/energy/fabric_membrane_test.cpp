@@ -134,26 +134,15 @@ TEST_CASE("fabric membrane: a collapsed triangle meets the barrier at every orde
 }
 
 TEST_CASE(
-    "fabric membrane: of the Gauss-Newton forms only the taut one holds a stretched sheet in its plane") {
+    "fabric membrane: the Gauss-Newton form does not hold a stretched sheet in its plane, the Hessian does") {
     const Star star = random_star(4);
     const Sample s{{star.layout[0], star.layout[1], star.layout[2]}, {}};
     const FabricMembrane term = membrane(s, Material{});
     // Without rotation: z is out of the plane.
     Eigen::VectorXd x = Eigen::VectorXd::Zero(9);
     for (int v = 0; v < 3; ++v) x.segment<2>(3 * v) = 1.4 * s.relaxed[v];
-    const auto out_of_plane = [&](Order order) -> Mat3 {
-        const Local<9> local = term.evaluate(0, {x.data(), 3}, order);
-        Mat3 z;
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) z(i, j) = local.hessian(3 * i + 2, 3 * j + 2);
-        }
-        return z;
-    };
-    const Mat3 exact = out_of_plane(Order::hessian);
-    CHECK(exact.diagonal().minCoeff() > 1e-3);
-    // The triangle's angles are acute: all its edges pull, and the whole stiffness of tension is there.
-    CHECK(out_of_plane(Order::gauss_newton_taut).isApprox(exact, 1e-13));
-    CHECK(out_of_plane(Order::gauss_newton).isZero(0.0));
-    for (int v = 0; v < 3; ++v) x.segment<2>(3 * v) = 0.8 * s.relaxed[v];
-    CHECK(out_of_plane(Order::gauss_newton_taut).isZero(0.0));
+    for (int v = 0; v < 3; ++v) {
+        CHECK(term.evaluate(0, {x.data(), 3}, Order::hessian).hessian(3 * v + 2, 3 * v + 2) > 1e-3);
+        CHECK(term.evaluate(0, {x.data(), 3}, Order::gauss_newton).hessian(3 * v + 2, 3 * v + 2) == 0.0);
+    }
 }
