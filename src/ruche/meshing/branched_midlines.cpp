@@ -8,6 +8,7 @@
 
 #include "ruche/geometry/polyline.hpp"
 #include "ruche/meshing/triangulate.hpp"
+#include "ruche/pattern/centreline.hpp"
 
 namespace ruche {
 namespace {
@@ -321,6 +322,16 @@ std::vector<Polyline> branched_midlines(const Polygon& polygon) {
         return skeleton.nodes[b.nodes[0]].degree > 2 || skeleton.nodes[b.nodes[1]].degree > 2;
     });
     return branches ? Lines(std::move(skeleton)).run() : std::vector<Polyline>();
+}
+
+std::vector<Polyline> middle_lines(const Region& region) {
+    std::vector<Polyline> all;
+    for (const Polygon& polygon : region) {
+        std::vector<Polyline> lines = branched_midlines(polygon);
+        if (lines.empty()) lines.push_back(midline(polygon));
+        for (Polyline& line : cut_to_region(lines, {polygon})) all.push_back(std::move(line));
+    }
+    return all;
 }
 
 }  // namespace ruche

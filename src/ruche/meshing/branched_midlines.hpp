@@ -16,4 +16,8 @@ namespace ruche {
 /// degrees are one line; the others run up to the middle of the junction.
 std::vector<Polyline> branched_midlines(const Polygon& polygon);
 
+/// The lines along the middle of a region whose lines nobody drew: branches where it branches, else the
+/// midline of each polygon; all cut to it.
+std::vector<Polyline> middle_lines(const Region& region);
+
 }  // namespace ruche

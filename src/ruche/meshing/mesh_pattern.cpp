@@ -6,6 +6,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/geometry/border_graph.hpp"
 #include "ruche/geometry/polyline.hpp"
+#include "ruche/meshing/branched_midlines.hpp"
 #include "ruche/meshing/mesh_order.hpp"
 #include "ruche/meshing/point_locator.hpp"
 #include "ruche/meshing/print_mesh.hpp"
@@ -217,6 +218,13 @@ void warn_about_size(PrintMesh& result, double expected) {
                     result.mesh.triangle_count(), expected, at.x(), at.y()));
 }
 
+/// What was drawn; of a region that nobody drew a line into, and that branches, all its branches.
+std::vector<Polyline> centre_lines(const Strip& strip) {
+    const auto branches = [](const Polygon& polygon) { return !branched_midlines(polygon).empty(); };
+    const bool all_found = strip.centreline_found && std::ranges::any_of(strip.region, branches);
+    return all_found ? middle_lines(strip.region) : strip.centreline;
+}
+
 std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions& options,
                                        const TriangleMesh& mesh, const std::vector<Cover>& covers) {
     const PointLocator locator(mesh);
@@ -230,7 +238,7 @@ std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions
         double size = options.size_mm;
         for (const Polygon& polygon : strip.region)
             size = std::min(size, size_on(polygon, strip.thickness, options));
-        for (const Polyline& line : strip.centreline) {
+        for (const Polyline& line : centre_lines(strip)) {
             const double pieces = std::ceil(length(line) / (0.5 * size) - 1e-9);
             if (!(pieces >= 1.0 && pieces < most_triangles)) continue;
             std::vector<MeshPoint> points;

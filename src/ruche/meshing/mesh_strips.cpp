@@ -7,7 +7,6 @@
 #include "ruche/geometry/polyline.hpp"
 #include "ruche/meshing/branched_midlines.hpp"
 #include "ruche/meshing/point_locator.hpp"
-#include "ruche/pattern/centreline.hpp"
 
 namespace ruche {
 namespace {
@@ -114,20 +113,15 @@ void find_strips(PrintMesh& layout, const std::vector<int>& number, const std::m
         MeshedStrip& strip = layout.strips[c];
         const auto name = names.find(given[c]);
         strip.id = given[c] >= 0 && name != names.end() ? name->second : "strip-" + std::to_string(c + 1);
-        const Region region = region_from_loops(loops[c], FillRule::nonzero);
-        for (const Polygon& polygon : region) {
-            std::vector<Polyline> middle = branched_midlines(polygon);
-            if (middle.empty()) middle.push_back(midline(polygon));
-            for (const Polyline& line : cut_to_region(middle, {polygon})) {
-                const double steps = std::ceil(2.0 * length(line) / std::max(sizes[c], 1e-9));
-                if (!(steps >= 1.0 && steps < 1e7)) continue;
-                std::vector<MeshPoint> points;
-                for (const Vec2& x : resample(line, false, static_cast<int>(steps) + 1)) {
-                    const auto at = locator.find(x, sizes[c], [&](int t) { return layout.strip[t] == c; });
-                    if (at) points.push_back(*at);
-                }
-                if (points.size() >= 2) strip.centreline.push_back(std::move(points));
+        for (const Polyline& line : middle_lines(region_from_loops(loops[c], FillRule::nonzero))) {
+            const double steps = std::ceil(2.0 * length(line) / std::max(sizes[c], 1e-9));
+            if (!(steps >= 1.0 && steps < 1e7)) continue;
+            std::vector<MeshPoint> points;
+            for (const Vec2& x : resample(line, false, static_cast<int>(steps) + 1)) {
+                const auto at = locator.find(x, sizes[c], [&](int t) { return layout.strip[t] == c; });
+                if (at) points.push_back(*at);
             }
+            if (points.size() >= 2) strip.centreline.push_back(std::move(points));
         }
     }
 }

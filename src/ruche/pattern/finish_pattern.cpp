@@ -197,6 +197,7 @@ void clean_borders(Pattern& pattern, double fabric_tolerance) {
 void add_missing_centrelines(std::vector<Strip>& strips) {
     for (Strip& strip : strips) {
         if (!strip.centreline.empty()) continue;
+        strip.centreline_found = true;
         for (const Polygon& polygon : strip.region) strip.centreline.push_back(midline(polygon));
     }
 }

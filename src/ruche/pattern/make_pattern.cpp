@@ -170,6 +170,7 @@ Sorted sort_shapes(const Drawing& drawing, const PrintRules& rules) {
         Strip strip{.id = names.own(shape.id),
                     .region = covered(shape),
                     .centreline = centre_of(shape),
+                    .centreline_found = !shape.filled.empty(),
                     .thickness = rule.thickness,
                     .side = rule.side,
                     .youngs_modulus = rule.youngs_modulus};

@@ -15,9 +15,10 @@ enum class Side { front, back };
 struct Strip {
     std::string id;
     Region region;  ///< mm, in the layout seen from the printed (front) side
-    std::vector<Polyline>
-        centreline;          ///< of a stroked path: the path; of a region: midpoints of its cross-sections
-    double thickness = 0.6;  ///< mm
+    /// Of a stroked path: the path; of a region: midpoints of its cross-sections.
+    std::vector<Polyline> centreline;
+    bool centreline_found = false;  ///< it was made from the region, nobody drew it
+    double thickness = 0.6;         ///< mm
     Side side = Side::front;
     double youngs_modulus = 0.0;  ///< MPa; 0 = the material card's plastic
 };

@@ -348,6 +348,25 @@ TEST_CASE("mesh: random overlapping strips give sound meshes with exact areas") 
     }));
 }
 
+TEST_CASE("mesh: a filled star has a centre line in every arm, as a stroked one has") {
+    const Polyline cross = {Vec2(5, 0),  Vec2(6, 0),  Vec2(6, 5), Vec2(11, 5), Vec2(11, 6), Vec2(6, 6),
+                            Vec2(6, 11), Vec2(5, 11), Vec2(5, 6), Vec2(0, 6),  Vec2(0, 5),  Vec2(5, 5)};
+    const PrintMesh mesh = mesh_pattern(make_pattern(drawing({filled("cross", cross)}), {}));
+    const auto& lines = mesh.strips.at(0).centreline;
+    REQUIRE(lines.size() == 2);
+    for (const std::vector<MeshPoint>& line : lines) {
+        const auto place = [&](const MeshPoint& at) {
+            Vec2 x = Vec2::Zero();
+            for (int i = 0; i < 3; ++i)
+                x += at.weights[i] * mesh.mesh.vertices[mesh.mesh.triangles[at.triangle][i]];
+            return x;
+        };
+        // From one end to the other through the middle, on the grid of 1 nm.
+        CHECK((place(line.back()) - place(line.front())).norm() == doctest::Approx(11.0).epsilon(1e-6));
+        CHECK((0.5 * (place(line.back()) + place(line.front())) - Vec2(5.5, 5.5)).norm() < 1e-5);
+    }
+}
+
 TEST_CASE("mesh: away from sharp input angles every angle is above 20 degrees") {
     CHECK(rc::check([] {
         Pattern drawn;
