@@ -11,11 +11,11 @@ using namespace ruche;
 namespace {
 
 /// Five rows of a cylinder, some 2000 triangles: enough for every parallel loop to be shared out.
-Result roll(int threads) {
+Result roll(int threads, bool deterministic = true) {
     Scene scene = parse_scene(
         "[pattern]\ngenerator = \"staggered\"\n[pattern.options]\nrows = 5\n[fabric]\nmargin_mm = 1\n",
         "k.toml");
-    scene.solver.deterministic = true;
+    scene.solver.deterministic = deterministic;
     scene.solver.threads = threads;
     return simulate(scene);
 }
@@ -43,5 +43,15 @@ TEST_CASE("solve: same bits at 1, 2 and 3 threads with solver.deterministic") {
         CHECK(other.equilibrium.energy.total() == one.equilibrium.energy.total());
         CHECK(other.equilibrium.residual == one.equilibrium.residual);
     }
+    set_thread_count(before);
+}
+
+TEST_CASE("solve: without solver.deterministic the same state to rounding") {
+    const int before = thread_count();
+    const double energy = roll(1).equilibrium.energy.total();
+    const Result shared = roll(2, false);
+    CHECK(shared.equilibrium.status == SolveStatus::converged);
+    CHECK(shared.equilibrium.stable);
+    CHECK(shared.equilibrium.energy.total() == doctest::Approx(energy).epsilon(1e-10));
     set_thread_count(before);
 }

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "ruche/core/error.hpp"
+#include "ruche/core/parallel.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
 #include "ruche/statics/rigid_motions.hpp"
@@ -379,6 +380,7 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
                                const Start& start) {
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
+    set_blas_threads(options.deterministic ? 1 : thread_count());
     Equilibrium result = Newton(model, options, control).run(start);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.levels = {{.triangles = model.input().mesh.triangle_count(),

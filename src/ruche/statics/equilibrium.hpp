@@ -16,7 +16,7 @@ struct SolveOptions {
     int max_iterations = 400;
     int seed = 1;               ///< of the noise that breaks the flat state's symmetry
     double noise_mm = 1e-3;     ///< its size, limited to 1 % of the element size
-    bool deterministic = true;  ///< same bits at any thread count
+    bool deterministic = true;  ///< same bits at any thread count: one BLAS thread
     int threads = 0;            ///< 0 = all cores
     bool coarse_start = true;   ///< simulate() solves on coarser meshes first
     /// Not an option of scenes: stop, without a certificate, when a step turns the sheet by less than this

@@ -15,7 +15,9 @@ std::span<const Field<SolveOptions>> fields<SolveOptions>() {
         {"noise_mm", &S::noise_mm, "mm", 0, 1,
          "Size of that noise, never more than 1 % of the element size. With 0 symmetric fabric stays flat."},
         {"deterministic", &S::deterministic, "", -infinity, infinity,
-         "The same bits at any number of threads."},
+         "The same bits at any number of threads. With false the factorisation uses several threads too: "
+         "faster on large "
+         "sheets when nothing else runs."},
         {"coarse_start", &S::coarse_start, "", -infinity, infinity,
          "Solve on coarser meshes of the drawing first, each the start for the next finer one."},
         {"threads", &S::threads, "", 0, 1024, "Threads to use; 0 takes every core."},

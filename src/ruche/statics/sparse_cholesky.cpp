@@ -4,6 +4,7 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <new>
@@ -12,6 +13,13 @@
 extern "C" void openblas_set_num_threads(int threads);
 
 namespace ruche {
+namespace {
+
+std::atomic<int> blas_threads = 1;
+
+}  // namespace
+
+void set_blas_threads(int count) { blas_threads = std::max(1, count); }
 
 struct SparseCholesky::Factor {
     cholmod_common common{};
@@ -32,8 +40,7 @@ struct SparseCholesky::Factor {
         common.supernodal = CHOLMOD_SUPERNODAL;
         common.final_ll = 1;
         common.quick_return_if_not_posdef = 1;
-        // Spinning BLAS threads are ruinous on a busy machine, and their sums depend on their number.
-        openblas_set_num_threads(1);
+        openblas_set_num_threads(blas_threads);
     }
     Factor(const Factor&) = delete;
     Factor& operator=(const Factor&) = delete;

@@ -39,6 +39,11 @@ class SparseCholesky {
     std::unique_ptr<Factor> factor_;
 };
 
+/// Threads of the dense kernels of factorisations that begin later, in the whole process; 1 until it is
+/// called. More than one pays on large sheets and an idle machine only (they spin while they wait for each
+/// other), and the last bits of a factor depend on their number.
+void set_blas_threads(int count);
+
 /// Nested dissection (METIS) of a graph given as adjacency lists in compressed rows (both directions, no
 /// loops).
 std::vector<int> nested_dissection(std::span<const int> start, std::span<const int> neighbours);
