@@ -341,6 +341,7 @@ void bind_solve(py::module_& m) {
         "simulate",
         [](const std::string& path, const std::vector<std::string>& set) {
             std::vector<Override> overrides;
+            overrides.reserve(set.size());
             for (const std::string& text : set) overrides.push_back(parse_override(text, "set"));
             const Scene scene = read_scene(path, overrides);
             std::atomic<bool> stop = false;
@@ -365,6 +366,7 @@ PYBIND11_MODULE(ruche, m) {
         [](const Mat2& a, const Mat2& b, const std::vector<std::tuple<double, double, double, Mat2>>& plies,
            double poissons_ratio) {
             std::vector<Ply> stack;
+            stack.reserve(plies.size());
             for (const auto& [z0, z1, modulus, rest_metric] : plies)
                 stack.push_back({z0, z1, modulus, rest_metric});
             return laminate_energy_density(a, b, stack, poissons_ratio);

@@ -21,7 +21,7 @@ const Node* Node::find(std::string_view name) const { return const_cast<Node*>(t
 
 static std::string shortened(const std::string& text) {
     constexpr std::size_t longest = 60;
-    return text.size() <= longest ? text : text.substr(0, longest) + "...";
+    return text.size() <= longest ? text : text.substr(0, longest).append("...");
 }
 
 std::string describe(const Node& node) {

@@ -237,6 +237,7 @@ Region stroke(const Polyline& line, bool closed, const StrokeStyle& style) {
     if (closed && points.front() == points.back()) points.pop_back();
     const int count = static_cast<int>(points.size());
     std::vector<Vec2> direction;  // of the segment from i to i + 1
+    direction.reserve(points.size());
     for (int i = 0; i < count; ++i)
         direction.emplace_back((points[(i + 1) % count] - points[i]).normalized());
 

@@ -24,7 +24,7 @@ class GridPositions {
         Vec3 low = Vec3::Constant(std::numeric_limits<double>::max());
         Vec3 high = -low;
         for (std::size_t i = 0; i < positions.size(); ++i) {
-            finite_[i] = positions[i].allFinite();
+            finite_[i] = positions[i].allFinite() ? 1 : 0;
             if (!finite_[i]) continue;
             low = low.cwiseMin(positions[i]);
             high = high.cwiseMax(positions[i]);

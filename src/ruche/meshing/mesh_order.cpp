@@ -36,6 +36,7 @@ std::vector<int> spatial_order(const TriangleMesh& mesh) {
     std::iota(order.begin(), order.end(), 0);
     if (order.empty()) return order;
     std::vector<Vec2> centre;
+    centre.reserve(order.size());
     for (const Triangle& t : mesh.triangles) {
         centre.emplace_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3.0);
     }

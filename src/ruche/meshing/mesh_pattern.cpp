@@ -273,6 +273,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     result.mesh = reordered(triangulation.mesh, order);
     check_manifold(result.mesh);
     std::vector<Cover> covers;
+    covers.reserve(order.size());
     for (const int t : order) covers.push_back(cover_of(covered[triangulation.piece[t]], pattern.strips));
     set_print(result, covers, pattern.strips);
     result.strips = meshed_strips(pattern, options, result.mesh, covers);

@@ -26,7 +26,7 @@ Moments moments(const std::vector<Vec3>& positions, const std::vector<Triangle>&
     Moments m;
     for (int pass = 0; pass < 2; ++pass) {
         for (const Triangle& t : triangles) {
-            const Vec3 a = positions[t[0]], b = positions[t[1]], c = positions[t[2]];
+            const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
             const double area = 0.5 * (b - a).cross(c - a).norm();
             if (!std::isfinite(area)) continue;
             const Vec3 middle = (a + b + c) / 3.0;

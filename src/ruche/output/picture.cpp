@@ -71,6 +71,7 @@ Panel make_panel(Stage stage, float elevation_deg, float distance, const Frame& 
 
 std::optional<Panel> drawing_panel(const Result& result, const Composition& c) {
     std::vector<Vec3> flat;
+    flat.reserve(result.layout.mesh.vertices.size());
     for (const Vec2& v : result.layout.mesh.vertices) flat.emplace_back(v.x(), v.y(), 0.0);
     Stage stage = make_stage(result, flat, place_flat(flat, result.layout.mesh.triangles));
     if (stage.outline.empty()) return {};

@@ -170,7 +170,6 @@ class Photographer {
     /// Key light that shines through the fabric from its other side.
     Vec3f light_through(const Surfel& s, const Vec3f& to_key) const {
         const float thick = 0.02F;
-        RayHit hit;
         const Vec3f from = s.position - start * s.normal;
         const float facing = -s.normal.dot(to_key);
         // The ray leaves through the sheet's own other face; only what comes after that is in the way.

@@ -40,6 +40,7 @@ class Tally {
 
 Region all_of(const std::vector<Strip>& strips) {
     std::vector<Region> regions;
+    regions.reserve(strips.size());
     for (const Strip& strip : strips) regions.push_back(strip.region);
     return unite(regions);
 }

@@ -137,6 +137,7 @@ class ShapeMaker {
     /// All in chords first, so that a drawing with too much detail is refused before the costly part.
     std::vector<Shape> make(const std::vector<DrawnItem>& items) {
         std::vector<Lines> lines;
+        lines.reserve(items.size());
         for (const DrawnItem& item : items) {
             lines.push_back(item.fill || item.stroke ? flattened(item) : Lines());
         }

@@ -73,6 +73,7 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
     result.warnings.insert(result.warnings.end(), released.warnings.begin(), released.warnings.end());
     result.seconds["release"] = watch.lap();
 
+    result.shape.reserve(mesh.vertices.size());
     for (int v = 0; v < mesh.vertex_count(); ++v)
         result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
     result.energy_density = released.model.energy_density(result.equilibrium.x);
