@@ -104,7 +104,9 @@ class Newton {
     }
 
     bool narrow_extension();
+    void build_matrix(Order order, double shift);
     bool factorize(Order order, double shift = 0.0);
+    bool solve_with_last_factor();
     bool solve_step(Order order);
     bool line_search();
     void relax_spots();
@@ -131,7 +133,9 @@ class Newton {
     AssembledSums trial_;
     EnergyTerms terms_;
     std::vector<double> matrix_;
-    double shift_ = 0.0;  // of the last indefinite Hessian, N/mm
+    double shift_ = 0.0;           // of the last indefinite Hessian, N/mm
+    bool factor_is_near_ = false;  // the last factor is of an exact Hessian
+    double rotation_ = infinity;   // rms of the last step
     int iterations_ = 0;
     int factorizations_ = 0;
 };
@@ -149,7 +153,7 @@ bool Newton::narrow_extension() {
     return true;
 }
 
-bool Newton::factorize(Order order, double shift) {
+void Newton::build_matrix(Order order, double shift) {
     const NodePattern& pattern = model().pattern();
     matrix_ = sums_.hessian;
     const auto resisting = order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
@@ -174,8 +178,44 @@ bool Newton::factorize(Order order, double shift) {
             if (held_[column] || held_[row[k]]) matrix_[k] = row[k] == column ? 1.0 : 0.0;
         }
     }
+}
+
+bool Newton::factorize(Order order, double shift) {
+    build_matrix(order, shift);
     ++factorizations_;
-    return cholesky_.factorize(matrix_);
+    const bool definite = cholesky_.factorize(matrix_);
+    factor_is_near_ = definite && order == Order::hessian && shift == 0.0;
+    return definite;
+}
+
+/// Solves for the step with the exact Hessian by conjugate gradients, preconditioned with the last factor.
+/// False when that would take long or the Hessian is not positive definite.
+bool Newton::solve_with_last_factor() {
+    constexpr double accuracy =
+        1e-3;                       // of the residual: Newton's convergence is faster than linear only so far
+    constexpr int most_steps = 10;  // a factorisation costs as much as some 20 of them
+    build_matrix(Order::hessian, 0.0);
+    const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
+        model().size(), model().size(), static_cast<Eigen::Index>(matrix_.size()),
+        model().pattern().column_start().data(), model().pattern().row_index().data(), matrix_.data());
+    Eigen::VectorXd rest = -sums_.gradient;
+    const double enough = accuracy * rest.norm();
+    Eigen::VectorXd direction = cholesky_.solve(rest);
+    double product = rest.dot(direction);
+    step_.setZero(model().size());
+    for (int i = 0; i < most_steps; ++i) {
+        const Eigen::VectorXd pull = matrix.selfadjointView<Eigen::Lower>() * direction;
+        const double curvature = direction.dot(pull);
+        if (!(curvature > 0.0)) return false;
+        step_ += (product / curvature) * direction;
+        rest -= (product / curvature) * pull;
+        if (rest.norm() < enough) return true;
+        const Eigen::VectorXd next = cholesky_.solve(rest);
+        const double next_product = rest.dot(next);
+        direction = next + (next_product / product) * direction;
+        product = next_product;
+    }
+    return false;
 }
 
 /// Factorises and solves for the step. Where the exact Hessian is not positive definite a sheet that nothing
@@ -183,6 +223,9 @@ bool Newton::factorize(Order order, double shift) {
 /// In one that supports or loads hold that stiffness is what resists (a pendulum has no other): there a
 /// multiple of the identity is added, little more than it takes. False when no matrix could be factorised.
 bool Newton::solve_step(Order order) {
+    constexpr double near = 0.03;  // rad
+    if (order == Order::hessian && factor_is_near_ && rotation_ < near && solve_with_last_factor())
+        return true;
     bool ready = factorize(order);
     const double mean = ready ? 0.0 : mean_stiffness();
     if (!ready && loaded_) {
@@ -276,16 +319,15 @@ void Newton::report() const {
 Equilibrium Newton::run(const Eigen::VectorXd& start) {
     x_ = retraction_.meet_supports(start);
     Equilibrium result;
-    double rotation = infinity;
     int gauss_newton_left = 0;
     int escapes = 0;
     bool stalled = false;
     for (;;) {
-        const bool exact = loaded_ || (rotation <= turning && gauss_newton_left == 0);
+        const bool exact = loaded_ || (rotation_ <= turning && gauss_newton_left == 0);
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
-        if ((rotation < settled || residual() <= options_.residual_tolerance_n) && narrow_extension())
+        if ((rotation_ < settled || residual() <= options_.residual_tolerance_n) && narrow_extension())
             evaluate(order);
         report();
         result.residual = residual();
@@ -309,10 +351,10 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
                 result.message = "a saddle that could not be left";
                 break;
             }
-            rotation = turning;
+            rotation_ = turning;
             continue;
         }
-        if (rotation < options_.enough_rotation) {
+        if (rotation_ < options_.enough_rotation) {
             result.message = "close enough for a start";
             break;
         }
@@ -333,11 +375,11 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
         }
         if (gauss_newton_left > 0) --gauss_newton_left;
         if (exact && factorizations_ > before + 1) gauss_newton_left = 1;
-        rotation = retraction_.rms_rotation(x_, step_);
+        rotation_ = retraction_.rms_rotation(x_, step_);
         stalled = !line_search();
         if (stalled && !exact) {
             // Try the exact Hessian before giving up.
-            rotation = 0.0;
+            rotation_ = 0.0;
             gauss_newton_left = 0;
             stalled = false;
             evaluate(Order::hessian);

@@ -53,7 +53,7 @@ TEST_CASE("nonlinear elimination: a vertex out of place is brought back and noth
     for (int round = 0; round < 6; ++round) {
         const double before = sheet.model.energy(x);
         CHECK(eliminate(sheet.model, x, sheet.model.gradient(x)));
-        CHECK(sheet.model.energy(x) <= before);
+        CHECK(sheet.model.energy(x) <= before * (1.0 + 1e-13));  // rounding of the sum over 800 elements
     }
     // Round by round the neighbours take part too; in the end the spot is where it came from.
     CHECK((x - sheet.rest).cwiseAbs().maxCoeff() < 0.02 * (sheet.x - sheet.rest).cwiseAbs().maxCoeff());
