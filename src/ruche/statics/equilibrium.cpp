@@ -191,9 +191,8 @@ bool Newton::factorize(Order order, double shift) {
 /// Solves for the step with the exact Hessian by conjugate gradients, preconditioned with the last factor.
 /// False when that would take long or the Hessian is not positive definite.
 bool Newton::solve_with_last_factor() {
-    constexpr double accuracy =
-        1e-3;                       // of the residual: Newton's convergence is faster than linear only so far
-    constexpr int most_steps = 10;  // a factorisation costs as much as some 20 of them
+    constexpr double accuracy = 1e-3;  // of the residual
+    constexpr int most_steps = 10;
     build_matrix(Order::hessian, 0.0);
     const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
         model().size(), model().size(), static_cast<Eigen::Index>(matrix_.size()),
