@@ -19,7 +19,7 @@ thread_local bool inside_parallel_for = false;
 class Pool {
   public:
     explicit Pool(int workers) {
-        for (int i = 0; i < workers; ++i) threads_.emplace_back([this] { work(); });
+        for (int i = 0; i < workers; ++i) threads_.emplace_back([this, worker = i + 1] { work(worker); });
     }
     Pool(const Pool&) = delete;
     Pool& operator=(const Pool&) = delete;
@@ -34,7 +34,7 @@ class Pool {
 
     int size() const { return static_cast<int>(threads_.size()) + 1; }
 
-    void run(std::size_t count, const std::function<void(std::size_t)>& body) {
+    void run(std::size_t count, const std::function<void(std::size_t, int)>& body) {
         {
             const std::scoped_lock lock(mutex_);
             body_ = &body;
@@ -45,7 +45,7 @@ class Pool {
             ++job_;
         }
         wake_.notify_all();
-        take_items();
+        take_items(0);
         std::unique_lock lock(mutex_);
         done_.wait(lock, [this] { return busy_ == 0; });
         body_ = nullptr;
@@ -53,11 +53,11 @@ class Pool {
     }
 
   private:
-    void take_items() {
+    void take_items(int worker) {
         inside_parallel_for = true;
         for (std::size_t i = next_.fetch_add(1); i < count_; i = next_.fetch_add(1)) {
             try {
-                (*body_)(i);
+                (*body_)(i, worker);
             } catch (...) {
                 const std::scoped_lock lock(mutex_);
                 if (!error_) error_ = std::current_exception();
@@ -67,7 +67,7 @@ class Pool {
         inside_parallel_for = false;
     }
 
-    void work() {
+    void work(int worker) {
         std::size_t seen = 0;
         for (;;) {
             {
@@ -76,7 +76,7 @@ class Pool {
                 if (quit_) return;
                 seen = job_;
             }
-            take_items();
+            take_items(worker);
             {
                 const std::scoped_lock lock(mutex_);
                 --busy_;
@@ -92,7 +92,7 @@ class Pool {
     std::size_t job_ = 0;
     int busy_ = 0;
     bool quit_ = false;
-    const std::function<void(std::size_t)>* body_ = nullptr;
+    const std::function<void(std::size_t, int)>* body_ = nullptr;
     std::size_t count_ = 0;
     std::atomic<std::size_t> next_{0};
     std::exception_ptr error_;
@@ -119,13 +119,17 @@ void set_thread_count(int count) {
     wanted_threads = std::max(1, count);
 }
 
-void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
+void parallel_for_workers(std::size_t count, const std::function<void(std::size_t, int)>& body) {
     if (inside_parallel_for || count <= 1 || thread_count() == 1) {
-        for (std::size_t i = 0; i < count; ++i) body(i);
+        for (std::size_t i = 0; i < count; ++i) body(i, 0);
         return;
     }
     const std::scoped_lock one_job_at_a_time(pool_mutex);
     pool().run(count, body);
+}
+
+void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body) {
+    parallel_for_workers(count, [&](std::size_t i, int) { body(i); });
 }
 
 }  // namespace ruche

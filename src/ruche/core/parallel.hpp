@@ -16,4 +16,7 @@ void set_thread_count(int count);
 /// what belongs to i. The first exception thrown by a body is thrown again here. Nested calls run serially.
 void parallel_for(std::size_t count, const std::function<void(std::size_t)>& body);
 
+/// The same with the number of the thread at work, in [0, thread_count()), for workspaces.
+void parallel_for_workers(std::size_t count, const std::function<void(std::size_t, int)>& body);
+
 }  // namespace ruche

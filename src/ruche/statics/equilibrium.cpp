@@ -421,7 +421,6 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
                                const Start& start) {
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
-    set_blas_threads(options.deterministic ? 1 : thread_count());
     Equilibrium result = Newton(model, options, control).run(start);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.levels = {{.triangles = model.input().mesh.triangle_count(),

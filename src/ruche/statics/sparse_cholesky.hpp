@@ -1,48 +1,37 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "ruche/energy/model.hpp"
+#include "ruche/statics/supernodal_factor.hpp"
 
 namespace ruche {
 
-/// The lower triangle of a symmetric matrix in compressed columns, rows ascending; entries above the diagonal
-/// are ignored. Only the structure: values come with each factorisation.
-struct SymmetricPattern {
-    int size = 0;
-    std::span<const int> column_start;
-    std::span<const int> row_index;
-};
-
-/// Supernodal Cholesky factorisation (CHOLMOD): analysed once, factorised many times.
+/// Sparse Cholesky factorisation: analysed once, factorised many times.
 class SparseCholesky {
   public:
     /// `elimination_order[k]` is the unknown that is eliminated k-th. Throws std::bad_alloc.
     SparseCholesky(const SymmetricPattern& pattern, std::vector<int> elimination_order);
-    ~SparseCholesky();
-    SparseCholesky(SparseCholesky&&) noexcept;
-    SparseCholesky& operator=(SparseCholesky&&) noexcept;
 
     /// False when the matrix is not positive definite (or not finite). Throws std::bad_alloc.
-    [[nodiscard]] bool factorize(std::span<const double> values);
+    [[nodiscard]] bool factorize(std::span<const double> values) { return factor_.factorize(values); }
 
     /// Solves with the last successful factor; one column per right-hand side.
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side);
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side) { return factor_.solve(right_hand_side); }
 
-    double factor_megabytes() const;
+    double factor_megabytes() const {
+        return static_cast<double>(factor_.structure().value_count()) * sizeof(double) / 1e6;
+    }
 
   private:
-    struct Factor;
-    std::unique_ptr<Factor> factor_;
+    SupernodalFactor factor_;
 };
 
-/// Threads of the dense kernels of factorisations that begin later, in the whole process; 1 until it is
-/// called. More than one pays on large sheets and an idle machine only (they spin while they wait for each
-/// other), and the last bits of a factor depend on their number.
-void set_blas_threads(int count);
+/// The name of the processor whose dense kernels BLAS has chosen, such as "Zen".
+std::string blas_kernels();
 
 /// Nested dissection (METIS) of a graph given as adjacency lists in compressed rows (both directions, no
 /// loops).

@@ -1,0 +1,346 @@
+#include "ruche/statics/supernodal_factor.hpp"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <numeric>
+
+#include "ruche/core/parallel.hpp"
+
+extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
+
+namespace ruche {
+namespace {
+
+constexpr int tile_columns = 128;  // of a large panel: what one thread works on
+constexpr int tile_rows = 256;
+constexpr double largest_subtree = 1.0 / 24.0;  // of the whole work: several threads are busy to the end
+
+/// Factors the leading columns of a panel in place; false when a pivot is not positive.
+bool factor_diagonal(int columns, double* panel, int stride) {
+    int info = 0;
+    dpotrf_("L", &columns, panel, &stride, &info);
+    if (info != 0) return false;
+    // A pivot that is not a number passes LAPACK's test.
+    for (int c = 0; c < columns; ++c) {
+        const double pivot = panel[c + static_cast<std::size_t>(c) * stride];
+        if (!(pivot > 0.0) || !std::isfinite(pivot)) return false;
+    }
+    return true;
+}
+
+/// below <- below diagonal^-T, both in one panel.
+void solve_below(int rows, int columns, const double* diagonal, double* below, int stride) {
+    if (rows == 0) return;
+    cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, rows, columns, 1.0, diagonal,
+                stride, below, stride);
+}
+
+/// The lower trapezoid of c <- a a_top^T * scale + c * keep, a_top being the first `width` of a's `height`
+/// rows.
+struct Trapezoid {
+    int width, height, depth;
+};
+void multiply(const Trapezoid& size, double scale, const double* a, int a_stride, double keep, double* c,
+              int c_stride) {
+    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, size.width, size.depth, scale, a, a_stride, keep, c,
+                c_stride);
+    if (size.height == size.width) return;
+    cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, size.height - size.width, size.width, size.depth,
+                scale, a + size.width, a_stride, a, a_stride, keep, c + size.width, c_stride);
+}
+
+int tiles(int length, int tile) { return (length + tile - 1) / tile; }
+
+}  // namespace
+
+SupernodalFactor::SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern)
+    : structure_(std::move(structure)), supernode_of_column_(structure_.size()) {
+    for (int s = 0; s < structure_.supernode_count(); ++s) {
+        for (int c = structure_.first_column[s]; c < structure_.first_column[s + 1]; ++c)
+            supernode_of_column_[c] = s;
+    }
+    list_entries(pattern);
+    list_updates();
+    split_tree();
+}
+
+void SupernodalFactor::list_entries(const SymmetricPattern& pattern) {
+    const int size = structure_.size();
+    std::vector<int> eliminated_at(size);
+    for (int k = 0; k < size; ++k) eliminated_at[structure_.permutation[k]] = k;
+    const auto for_each_entry = [&](auto&& use) {
+        for (int column = 0; column < size; ++column) {
+            for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
+                if (pattern.row_index[k] < column) continue;
+                const int a = eliminated_at[column];
+                const int b = eliminated_at[pattern.row_index[k]];
+                use(k, std::max(a, b), std::min(a, b));
+            }
+        }
+    };
+    first_entry_.assign(structure_.supernode_count() + 1, 0);
+    for_each_entry([&](int, int, int column) { ++first_entry_[supernode_of_column_[column] + 1]; });
+    std::partial_sum(first_entry_.begin(), first_entry_.end(), first_entry_.begin());
+    entries_.resize(first_entry_.back());
+    std::vector<std::size_t> next(first_entry_.begin(), first_entry_.end() - 1);
+    for_each_entry([&](int source, int row, int column) {
+        const int s = supernode_of_column_[column];
+        const int* rows = structure_.panel_row(s);
+        const int stride = structure_.panel_rows(s);
+        const auto at = static_cast<int>(std::lower_bound(rows, rows + stride, row) - rows);
+        entries_[next[s]++] = {source, at + (column - structure_.first_column[s]) * stride};
+    });
+}
+
+void SupernodalFactor::list_updates() {
+    const auto for_each_update = [&](auto&& use) {
+        for (int s = 0; s < structure_.supernode_count(); ++s) {
+            const int rows = structure_.panel_rows(s);
+            const auto target = [&](int row) { return supernode_of_column_[structure_.panel_row(s)[row]]; };
+            for (int begin = structure_.columns(s); begin < rows;) {
+                int end = begin + 1;
+                while (end < rows && target(end) == target(begin)) ++end;
+                use(target(begin), Update{s, begin, end});
+                begin = end;
+            }
+        }
+    };
+    first_update_.assign(structure_.supernode_count() + 1, 0);
+    for_each_update([&](int to, const Update&) { ++first_update_[to + 1]; });
+    std::partial_sum(first_update_.begin(), first_update_.end(), first_update_.begin());
+    updates_.resize(first_update_.back());
+    std::vector<int> next(first_update_.begin(), first_update_.end() - 1);
+    for_each_update([&](int to, const Update& update) { updates_[next[to]++] = update; });
+}
+
+/// Multiplications that a supernode causes, in its own panel and in those it updates, up to a factor.
+double SupernodalFactor::work(int s) const {
+    const double rows = structure_.panel_rows(s);
+    return structure_.columns(s) * rows * rows;
+}
+
+/// Cuts the elimination tree into subtrees none of which holds more than a small share of the work.
+void SupernodalFactor::split_tree() {
+    const int count = structure_.supernode_count();
+    std::vector<int> parent(count, -1);
+    std::vector<double> below(count, 0.0);
+    double whole = 0.0;
+    for (int s = 0; s < count; ++s) {
+        whole += work(s);
+        below[s] += work(s);
+        if (structure_.panel_rows(s) == structure_.columns(s)) continue;
+        parent[s] = supernode_of_column_[structure_.panel_row(s)[structure_.columns(s)]];
+        below[parent[s]] += below[s];
+    }
+    std::vector<int> subtree_of(count, -1);
+    for (int s = count - 1; s >= 0; --s) {
+        if (parent[s] >= 0 && subtree_of[parent[s]] >= 0) {
+            subtree_of[s] = subtree_of[parent[s]];
+        } else if (below[s] <= largest_subtree * whole) {
+            subtree_of[s] = static_cast<int>(subtrees_.size());
+            subtrees_.push_back({.work = below[s]});
+        }
+    }
+    for (int s = 0; s < count; ++s)
+        (subtree_of[s] < 0 ? top_ : subtrees_[subtree_of[s]].supernodes).push_back(s);
+    // Short ones fill the gaps at the end.
+    std::stable_sort(subtrees_.begin(), subtrees_.end(),
+                     [](const Subtree& a, const Subtree& b) { return a.work > b.work; });
+}
+
+void SupernodalFactor::place_entries(int s, std::span<const double> values) {
+    double* to = panel(s);
+    std::fill(to, panel(s + 1), 0.0);
+    for (std::size_t e = first_entry_[s]; e < first_entry_[s + 1]; ++e)
+        to[entries_[e].target] += values[entries_[e].source];
+}
+
+/// Subtracts the updates of all supernodes below from columns [first_column, last_column) of a panel.
+void SupernodalFactor::gather_updates(int s, int first_column, int last_column, Workspace& workspace) {
+    workspace.position.resize(structure_.size());
+    int* position = workspace.position.data();
+    const int stride = structure_.panel_rows(s);
+    for (int i = 0; i < stride; ++i) position[structure_.panel_row(s)[i]] = i;
+    for (int u = first_update_[s]; u < first_update_[s + 1]; ++u) {
+        const Update& update = updates_[u];
+        const int* rows = structure_.panel_row(update.from);
+        const int* begin = std::lower_bound(rows + update.begin, rows + update.end, first_column);
+        const int* end = std::lower_bound(begin, rows + update.end, last_column);
+        if (begin == end) continue;
+        const int from_stride = structure_.panel_rows(update.from);
+        const Trapezoid size{.width = static_cast<int>(end - begin),
+                             .height = static_cast<int>(rows + from_stride - begin),
+                             .depth = structure_.columns(update.from)};
+        const std::size_t needed = static_cast<std::size_t>(size.width) * size.height;
+        if (workspace.product.size() < needed) workspace.product.resize(needed);
+        double* product = workspace.product.data();
+        multiply(size, 1.0, panel(update.from) + (begin - rows), from_stride, 0.0, product, size.height);
+        for (int c = 0; c < size.width; ++c, product += size.height) {
+            double* to = panel(s) + static_cast<std::size_t>(position[begin[c]]) * stride;
+            for (int r = c; r < size.height; ++r) to[position[begin[r]]] -= product[r];
+        }
+    }
+}
+
+bool SupernodalFactor::factor_alone(int s, std::span<const double> values, Workspace& workspace) {
+    const int columns = structure_.columns(s);
+    const int rows = structure_.panel_rows(s);
+    place_entries(s, values);
+    gather_updates(s, structure_.first_column[s], structure_.first_column[s + 1], workspace);
+    if (!factor_diagonal(columns, panel(s), rows)) return false;
+    solve_below(rows - columns, columns, panel(s), panel(s) + columns, rows);
+    return true;
+}
+
+/// All threads work on one panel: on the updates of its column tiles, then on the tiles of its factorisation.
+bool SupernodalFactor::factor_together(int s, std::span<const double> values) {
+    const int columns = structure_.columns(s);
+    const int rows = structure_.panel_rows(s);
+    const int first = structure_.first_column[s];
+    const auto at = [&](int row, int column) {
+        return panel(s) + row + static_cast<std::size_t>(column) * rows;
+    };
+    place_entries(s, values);
+    parallel_for_workers(tiles(columns, tile_columns), [&](std::size_t tile, int worker) {
+        const int begin = static_cast<int>(tile) * tile_columns;
+        gather_updates(s, first + begin, first + std::min(columns, begin + tile_columns),
+                       workspaces_[worker]);
+    });
+    for (int begin = 0; begin < columns; begin += tile_columns) {
+        const int end = std::min(columns, begin + tile_columns);
+        if (!factor_diagonal(end - begin, at(begin, begin), rows)) return false;
+        parallel_for(tiles(rows - end, tile_rows), [&](std::size_t tile) {
+            const int row = end + static_cast<int>(tile) * tile_rows;
+            solve_below(std::min(tile_rows, rows - row), end - begin, at(begin, begin), at(row, begin), rows);
+        });
+        parallel_for(tiles(columns - end, tile_columns), [&](std::size_t tile) {
+            const int column = end + static_cast<int>(tile) * tile_columns;
+            const Trapezoid size{.width = std::min(tile_columns, columns - column),
+                                 .height = rows - column,
+                                 .depth = end - begin};
+            multiply(size, -1.0, at(column, begin), rows, 1.0, at(column, column), rows);
+        });
+    }
+    return true;
+}
+
+bool SupernodalFactor::factorize(std::span<const double> values) {
+    if (!values_) values_ = std::make_unique_for_overwrite<double[]>(structure_.value_count());
+    workspaces_.resize(thread_count());
+    std::atomic<bool> definite = true;
+    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
+        for (const int s : subtrees_[i].supernodes) {
+            if (!definite.load(std::memory_order_relaxed)) return;
+            if (!factor_alone(s, values, workspaces_[worker])) definite = false;
+        }
+    });
+    for (const int s : top_) {
+        if (!definite) return false;
+        definite = factor_together(s, values);
+    }
+    return definite;
+}
+
+/// y_s <- L_ss^-1 y_s, and what that takes from the rows below: those up to `last_inside` in y itself, those
+/// above it in workspace.outside.
+void SupernodalFactor::solve_forward(int s, Eigen::MatrixXd& y, int last_inside, Workspace& workspace) {
+    const int columns = structure_.columns(s);
+    const int stride = structure_.panel_rows(s);
+    const int below = stride - columns;
+    const int count = static_cast<int>(y.cols());
+    const int length = static_cast<int>(y.rows());
+    double* own = y.data() + structure_.first_column[s];
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, columns, count, 1.0,
+                panel(s), stride, own, length);
+    if (below == 0) return;
+    workspace.gathered.resize(below, count);
+    if (count == 1) {
+        cblas_dgemv(CblasColMajor, CblasNoTrans, below, columns, 1.0, panel(s) + columns, stride, own, 1, 0.0,
+                    workspace.gathered.data(), 1);
+    } else {
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, below, count, columns, 1.0, panel(s) + columns,
+                    stride, own, length, 0.0, workspace.gathered.data(), below);
+    }
+    const int* rows = structure_.panel_row(s) + columns;
+    for (int c = 0; c < count; ++c) {
+        for (int r = 0; r < below; ++r) {
+            Eigen::MatrixXd& to = rows[r] <= last_inside ? y : workspace.outside;
+            to(rows[r], c) -= workspace.gathered(r, c);
+        }
+    }
+}
+
+/// y_s <- L_ss^-T (y_s - L_below^T y_below).
+void SupernodalFactor::solve_backward(int s, Eigen::MatrixXd& y, Workspace& workspace) {
+    const int columns = structure_.columns(s);
+    const int stride = structure_.panel_rows(s);
+    const int below = stride - columns;
+    const int count = static_cast<int>(y.cols());
+    const int length = static_cast<int>(y.rows());
+    double* own = y.data() + structure_.first_column[s];
+    if (below > 0) {
+        workspace.gathered.resize(below, count);
+        const int* rows = structure_.panel_row(s) + columns;
+        for (int c = 0; c < count; ++c) {
+            for (int r = 0; r < below; ++r) workspace.gathered(r, c) = y(rows[r], c);
+        }
+        if (count == 1) {
+            cblas_dgemv(CblasColMajor, CblasTrans, below, columns, -1.0, panel(s) + columns, stride,
+                        workspace.gathered.data(), 1, 1.0, own, 1);
+        } else {
+            cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns, count, below, -1.0,
+                        panel(s) + columns, stride, workspace.gathered.data(), below, 1.0, own, length);
+        }
+    }
+    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit, columns, count, 1.0, panel(s),
+                stride, own, length);
+}
+
+Eigen::MatrixXd SupernodalFactor::solve(const Eigen::MatrixXd& b) {
+    const Eigen::Index count = b.cols();
+    Eigen::MatrixXd y(b.rows(), count);
+    for (Eigen::Index k = 0; k < b.rows(); ++k) y.row(k) = b.row(structure_.permutation[k]);
+
+    workspaces_.resize(thread_count());
+    // What a subtree takes from rows above it waits until all are done, to be added in the same order always.
+    std::vector<Eigen::MatrixXd> shares(subtrees_.size());
+    const auto rows_above = [&](const Subtree& subtree) {
+        const int root = subtree.supernodes.back();
+        return std::span(structure_.panel_row(root), structure_.panel_rows(root))
+            .subspan(structure_.columns(root));
+    };
+    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
+        Workspace& workspace = workspaces_[worker];
+        if (workspace.outside.rows() != y.rows() || workspace.outside.cols() != count)
+            workspace.outside = Eigen::MatrixXd::Zero(y.rows(), count);
+        const int last_inside = structure_.first_column[subtrees_[i].supernodes.back() + 1] - 1;
+        for (const int s : subtrees_[i].supernodes) solve_forward(s, y, last_inside, workspace);
+        const std::span<const int> above = rows_above(subtrees_[i]);
+        shares[i].resize(static_cast<Eigen::Index>(above.size()), count);
+        for (std::size_t r = 0; r < above.size(); ++r) {
+            shares[i].row(static_cast<Eigen::Index>(r)) = workspace.outside.row(above[r]);
+            workspace.outside.row(above[r]).setZero();
+        }
+    });
+    for (std::size_t i = 0; i < subtrees_.size(); ++i) {
+        const std::span<const int> above = rows_above(subtrees_[i]);
+        for (std::size_t r = 0; r < above.size(); ++r)
+            y.row(above[r]) += shares[i].row(static_cast<Eigen::Index>(r));
+    }
+    for (const int s : top_) solve_forward(s, y, structure_.size(), workspaces_[0]);
+    for (std::size_t i = top_.size(); i-- > 0;) solve_backward(top_[i], y, workspaces_[0]);
+    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
+        const std::vector<int>& supernodes = subtrees_[i].supernodes;
+        for (std::size_t k = supernodes.size(); k-- > 0;)
+            solve_backward(supernodes[k], y, workspaces_[worker]);
+    });
+
+    Eigen::MatrixXd x(b.rows(), count);
+    for (Eigen::Index k = 0; k < b.rows(); ++k) x.row(structure_.permutation[k]) = y.row(k);
+    return x;
+}
+
+}  // namespace ruche

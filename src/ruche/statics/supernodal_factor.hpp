@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "ruche/statics/supernodal_structure.hpp"
+
+namespace ruche {
+
+/// Numeric Cholesky factorisation A = L L^T on a given structure, left-looking: every supernode gathers the
+/// updates of those below it, then factors its panel (Ng, Peyton 1993; Rothberg, Gupta 1994).
+///
+/// Subtrees of the elimination tree that do not touch each other run on different threads; at the large
+/// supernodes above them all threads work together, tile by tile. Subtrees and tiles do not depend on the
+/// number of threads, nor does the order of the sums, so the bits of L do not either. The dense kernels are
+/// BLAS's, on one thread each.
+class SupernodalFactor {
+  public:
+    /// `pattern`: of A, as it was analysed.
+    SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern);
+
+    /// `values`: of A on its pattern. False when A is not positive definite (or not finite); what was
+    /// factorised before is lost then. Throws std::bad_alloc.
+    [[nodiscard]] bool factorize(std::span<const double> values);
+
+    /// A^-1 b after a successful factorisation; one column per right-hand side.
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& b);
+
+    const SupernodalStructure& structure() const { return structure_; }
+
+  private:
+    /// Rows [begin, end) of a supernode's panel are columns of one that is eliminated later.
+    struct Update {
+        int from;
+        int begin, end;
+    };
+    struct Entry {
+        int source;  // in A's values
+        int target;  // in the panel
+    };
+    /// A part of the elimination tree below one supernode, its root.
+    struct Subtree {
+        std::vector<int> supernodes;  // in order of elimination, the root last
+        double work = 0.0;
+    };
+    /// What one thread works with.
+    struct Workspace {
+        std::vector<int> position;    // of a row in the panel at work
+        std::vector<double> product;  // of one update
+        Eigen::MatrixXd gathered;     // rows of a right-hand side
+        Eigen::MatrixXd outside;      // a subtree's share in the rows above it
+    };
+
+    void list_entries(const SymmetricPattern& pattern);
+    void list_updates();
+    void split_tree();
+
+    double* panel(int s) { return values_.get() + structure_.panel_start[s]; }
+    double work(int s) const;
+    void place_entries(int s, std::span<const double> values);
+    void gather_updates(int s, int first_column, int last_column, Workspace& workspace);
+    bool factor_alone(int s, std::span<const double> values, Workspace& workspace);
+    bool factor_together(int s, std::span<const double> values);
+
+    void solve_forward(int s, Eigen::MatrixXd& y, int last_inside, Workspace& workspace);
+    void solve_backward(int s, Eigen::MatrixXd& y, Workspace& workspace);
+
+    SupernodalStructure structure_;
+    std::unique_ptr<double[]> values_;  // all panels; none before the first factorisation
+    std::vector<int> supernode_of_column_;
+    std::vector<std::size_t> first_entry_;
+    std::vector<Entry> entries_;  // by supernode
+    std::vector<int> first_update_;
+    std::vector<Update> updates_;        // by supernode that receives them
+    std::vector<Subtree> subtrees_;      // the one with most work first
+    std::vector<int> top_;               // all other supernodes, in order of elimination
+    std::vector<Workspace> workspaces_;  // per thread that takes part, see parallel_for_workers
+};
+
+}  // namespace ruche

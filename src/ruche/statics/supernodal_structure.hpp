@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace ruche {
+
+/// The lower triangle of a symmetric matrix in compressed columns, rows ascending; entries above the diagonal
+/// are ignored. Only the structure: values come with each factorisation.
+struct SymmetricPattern {
+    int size = 0;
+    std::span<const int> column_start;
+    std::span<const int> row_index;
+};
+
+/// The structure of a Cholesky factor whose columns are gathered in supernodes, groups of columns with the
+/// same rows. Supernode s has the columns [first_column[s], first_column[s + 1]) and the rows
+/// rows[row_start[s]] ..< rows[row_start[s + 1]], ascending, its own columns first; its values are a dense
+/// column-major panel that begins at panel_start[s]. Columns and rows are numbered in the order of
+/// elimination.
+struct SupernodalStructure {
+    std::vector<int> first_column;
+    std::vector<int> row_start;
+    std::vector<std::size_t> panel_start;
+    std::vector<int> rows;
+    std::vector<int> permutation;  ///< the unknown that is eliminated k-th
+
+    int size() const { return static_cast<int>(permutation.size()); }
+    int supernode_count() const { return static_cast<int>(first_column.size()) - 1; }
+    int columns(int s) const { return first_column[s + 1] - first_column[s]; }
+    int panel_rows(int s) const { return row_start[s + 1] - row_start[s]; }
+    const int* panel_row(int s) const { return rows.data() + row_start[s]; }
+    std::size_t value_count() const { return panel_start.back(); }
+};
+
+/// Symbolic analysis (CHOLMOD): the structure of the factor when `elimination_order[k]` is eliminated k-th,
+/// up to exchanges that leave the fill as it is. Throws std::bad_alloc.
+SupernodalStructure analyse(const SymmetricPattern& pattern, std::vector<int> elimination_order);
+
+}  // namespace ruche
