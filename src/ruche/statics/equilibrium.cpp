@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "ruche/core/error.hpp"
@@ -103,12 +104,20 @@ class Newton {
                std::abs(terms_.gravity);
     }
 
+    /// The Gauss-Newton form's share in the matrix where the exact Hessian is not positive definite: what it
+    /// begins with, and the factor by which it grows and falls.
+    static constexpr double first_blend = 0.1;
+    static constexpr double blend_factor = 4.0;
+
     bool narrow_extension();
     void build_matrix(Order order, double shift);
     bool factorize(Order order, double shift = 0.0);
+    bool factorize_blend();
+    void adapt_blend();
     bool solve_with_last_factor();
     bool solve_step(Order order);
     bool line_search();
+    bool at_rounding_limit() const;
     void relax_spots();
     bool leave_saddle();
     void report() const;
@@ -134,6 +143,8 @@ class Newton {
     EnergyTerms terms_;
     std::vector<double> matrix_;
     double shift_ = 0.0;           // of the last indefinite Hessian, N/mm
+    double blend_ = 0.0;           // share of the Gauss-Newton form in the matrix
+    double step_length_ = 1.0;     // of the last line search; 1 = Newton's step
     bool factor_is_near_ = false;  // the last factor is of an exact Hessian
     double rotation_ = infinity;   // rms of the last step
     int iterations_ = 0;
@@ -217,24 +228,47 @@ bool Newton::solve_with_last_factor() {
     return false;
 }
 
-/// Factorises and solves for the step. Where the exact Hessian is not positive definite a sheet that nothing
-/// holds falls back on the Gauss-Newton form, whose lack of geometric stiffness the retraction makes up for.
-/// In one that supports or loads hold that stiffness is what resists (a pendulum has no other): there a
-/// multiple of the identity is added, little more than it takes. False when no matrix could be factorised.
+/// The exact Hessian, or where that is not positive definite (fabric about to buckle) a mean of it and the
+/// Gauss-Newton form, whose share is kept from step to step. On its own the latter knows nothing of the
+/// compression that makes fabric buckle, and a barely definite matrix runs far along the buckling shapes.
+bool Newton::factorize_blend() {
+    if (blend_ == 0.0 && factorize(Order::hessian)) return true;
+    model().evaluate(x_, Order::gauss_newton, trial_);
+    const std::vector<double> exact = sums_.hessian;
+    bool ready = false;
+    for (blend_ = std::max(blend_, first_blend); !ready;) {
+        for (std::size_t i = 0; i < exact.size(); ++i)
+            sums_.hessian[i] = (1.0 - blend_) * exact[i] + blend_ * trial_.hessian[i];
+        ready = factorize(Order::gauss_newton);
+        if (blend_ == 1.0) break;
+        if (!ready) blend_ = std::min(1.0, blend_factor * blend_);
+    }
+    return ready;
+}
+
+/// More of the Gauss-Newton form after a step that was too long, less after one that was not.
+void Newton::adapt_blend() {
+    if (step_length_ < 1.0) {
+        blend_ = std::clamp(blend_factor * blend_, 0.5 * first_blend, 1.0);
+    } else {
+        blend_ /= blend_factor;
+        if (blend_ < 0.3 * first_blend) blend_ = 0.0;
+    }
+}
+
+/// Factorises and solves for the step. In a sheet that supports or loads hold, geometric stiffness is what
+/// resists (a pendulum has no other), and the Gauss-Newton form lacks it: there a multiple of the identity is
+/// added, little more than it takes. False when no matrix could be factorised.
 bool Newton::solve_step(Order order) {
     constexpr double near = 0.03;  // rad
     if (order == Order::hessian && factor_is_near_ && rotation_ < near && solve_with_last_factor())
         return true;
-    bool ready = factorize(order);
+    bool ready = order == Order::hessian && !loaded_ ? factorize_blend() : factorize(order);
     const double mean = ready ? 0.0 : mean_stiffness();
     if (!ready && loaded_) {
         for (shift_ = std::max(0.1 * shift_, 1e-9 * mean); !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
             ready = factorize(order, shift_);
-    } else if (!ready) {
-        if (order == Order::hessian) {
-            evaluate(Order::gauss_newton);
-            ready = factorize(Order::gauss_newton);
-        }
+    } else {
         for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
             ready = factorize(Order::gauss_newton, shift);
     }
@@ -247,8 +281,9 @@ bool Newton::line_search() {
     const double energy = terms_.total();
     const double slope = sums_.gradient.dot(step_);
     const double before = residual();
-    double t = 1.0;
-    for (int halving = 0; halving < 30; ++halving, t *= 0.5) {
+    step_length_ = 1.0;
+    for (int halving = 0; halving < 30; ++halving, step_length_ *= 0.5) {
+        const double t = step_length_;
         const Eigen::VectorXd candidate = retraction_(x_, step_, t);
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
@@ -266,6 +301,25 @@ bool Newton::line_search() {
         }
     }
     return false;
+}
+
+/// Whether every component of the gradient is at rest or below what the last digits of the positions decide,
+/// sum_j |H_ij| |x_j| eps: where fabric leans on the steep end of its law that may be above the tolerance.
+/// Asks for the exact Hessian in the sums.
+bool Newton::at_rounding_limit() const {
+    const std::vector<int>& start = model().pattern().column_start();
+    const std::vector<int>& row = model().pattern().row_index();
+    Eigen::VectorXd limit = Eigen::VectorXd::Zero(model().size());
+    for (int column = 0; column < model().size(); ++column) {
+        for (int k = start[column]; k < start[column + 1]; ++k) {
+            if (row[k] < column) continue;
+            const double stiffness = std::abs(sums_.hessian[k]);
+            limit[row[k]] += stiffness * std::abs(x_[column]);
+            if (row[k] != column) limit[column] += stiffness * std::abs(x_[row[k]]);
+        }
+    }
+    limit *= std::numeric_limits<double>::epsilon();
+    return (sums_.gradient.cwiseAbs().array() <= limit.array().max(options_.residual_tolerance_n)).all();
 }
 
 /// Nonlinear elimination after a step, unless Newton's method converges well without it.
@@ -318,11 +372,10 @@ void Newton::report() const {
 Equilibrium Newton::run(const Eigen::VectorXd& start) {
     x_ = retraction_.meet_supports(start);
     Equilibrium result;
-    int gauss_newton_left = 0;
     int escapes = 0;
     bool stalled = false;
     for (;;) {
-        const bool exact = loaded_ || (rotation_ <= turning && gauss_newton_left == 0);
+        const bool exact = loaded_ || rotation_ <= turning;
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
@@ -334,14 +387,16 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             result.message = "the start is not a possible shape: its energy is not finite";
             break;
         }
-        if (result.residual <= options_.residual_tolerance_n || stalled) {
+        const bool at_rest = result.residual <= options_.residual_tolerance_n;
+        const bool rounded = !at_rest && exact && at_rounding_limit();
+        if (at_rest || rounded || stalled) {
             if (!exact) evaluate(Order::hessian);
             result.stable = factorize(Order::hessian);
             if (result.stable || escapes == 5) {
-                result.status = result.residual <= options_.residual_tolerance_n ? SolveStatus::converged
-                                                                                 : SolveStatus::not_converged;
+                result.status = at_rest || rounded ? SolveStatus::converged : SolveStatus::not_converged;
                 result.message = result.stable ? "strict local minimum" : "stationary, but not a minimum";
-                if (stalled) result.message = "no step lowers energy or residual any further";
+                if (rounded) result.message += ", to the last digits of the positions";
+                if (stalled && !rounded) result.message = "no step lowers energy or residual any further";
                 break;
             }
             ++escapes;
@@ -367,23 +422,20 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             break;
         }
         ++iterations_;
-        const int before = factorizations_;
         if (!solve_step(order)) {
             result.message = "no factorisable matrix at iteration " + std::to_string(iterations_);
             break;
         }
-        if (gauss_newton_left > 0) --gauss_newton_left;
-        if (exact && factorizations_ > before + 1) gauss_newton_left = 1;
         rotation_ = retraction_.rms_rotation(x_, step_);
         stalled = !line_search();
         if (stalled && !exact) {
             // Try the exact Hessian before giving up.
             rotation_ = 0.0;
-            gauss_newton_left = 0;
             stalled = false;
             evaluate(Order::hessian);
             stalled = !(solve_step(Order::hessian) && line_search());
         }
+        if (exact) adapt_blend();
         if (!stalled) relax_spots();
     }
     result.x = x_;
