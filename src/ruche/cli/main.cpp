@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -73,9 +74,7 @@ int failure(const char* reason) {
     return static_cast<int>(ruche::ExitCode::failed);
 }
 
-}  // namespace
-
-int main(int count, char** arguments) {
+int run_and_report(int count, char** arguments) {
     try {
         return run(count, arguments);
     } catch (const ruche::InputError& error) {
@@ -86,4 +85,17 @@ int main(int count, char** arguments) {
     } catch (const std::exception& error) {
         return failure(error.what());
     }
+}
+
+}  // namespace
+
+int main(int count, char** arguments) {
+    const int status = run_and_report(count, arguments);
+#ifndef __SANITIZE_ADDRESS__
+    // Without the libraries' farewells: where memory is limited a thread of OpenBLAS may still be waiting for
+    // its share, and OpenBLAS would wait for that thread.
+    std::fflush(nullptr);
+    std::_Exit(status);
+#endif
+    return status;
 }

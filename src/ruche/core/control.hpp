@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -14,16 +15,19 @@ struct Progress {
     std::string text;        ///< one line for a person, such as "iteration 4: residual 2.1e-03 N"
 };
 
-/// What a caller gives to a long computation: where to report, and a flag that asks it to stop at the next
-/// safe point.
+/// What a caller gives to a long computation: where to report, a flag that asks it to stop at the next safe
+/// point, and when its time is over.
 struct Control {
+    using Clock = std::chrono::steady_clock;
     std::function<void(const Progress&)> report;
     const std::atomic<bool>* stop = nullptr;
+    Clock::time_point deadline = Clock::time_point::max();
 
     void say(const Progress& progress) const {
         if (report) report(progress);
     }
     bool stopped() const { return stop != nullptr && stop->load(std::memory_order_relaxed); }
+    bool timed_out() const { return deadline != Clock::time_point::max() && Clock::now() >= deadline; }
 };
 
 }  // namespace ruche

@@ -17,8 +17,8 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
     if (order == Order::value) return local;
 
     // Local corner order of each triangle in the hinge's vertices: (a, b, c) and (b, a, d).
-    static constexpr int left_slot[3] = {0, 1, 2};
-    static constexpr int right_slot[3] = {1, 0, 3};
+    static constexpr std::array<int, 3> left_slot = {0, 1, 2};
+    static constexpr std::array<int, 3> right_slot = {1, 0, 3};
     const double sec2 = 1.0 + tangent * tangent;
     const double slope = 2.0 * k * tangent * sec2;
     Eigen::Matrix<double, 12, 1> theta = Eigen::Matrix<double, 12, 1>::Zero();
@@ -32,14 +32,8 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
     const double curvature = k * sec2 * (1.0 + 3.0 * tangent * tangent);
     local.hessian.noalias() = (curvature * theta) * theta.transpose();
     if (order != Order::hessian) return local;
-    for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) {
-            local.hessian.block<3, 3>(3 * left_slot[i], 3 * left_slot[j]) +=
-                slope * left.second_derivative(i, j);
-            local.hessian.block<3, 3>(3 * right_slot[i], 3 * right_slot[j]) +=
-                slope * right.second_derivative(i, j);
-        }
-    }
+    left.add_second_derivative(slope, left_slot, local.hessian);
+    right.add_second_derivative(slope, right_slot, local.hessian);
     return local;
 }
 

@@ -7,6 +7,11 @@
 namespace ruche {
 namespace {
 
+/// Where the corners of the two triangles at edge i stand among an element's vertices, in the order edge
+/// start, edge end, opposite corner.
+constexpr std::array<int, 3> own_slot[3] = {{1, 2, 0}, {2, 0, 1}, {0, 1, 2}};
+constexpr std::array<int, 3> flap_slot[3] = {{2, 1, 3}, {0, 2, 4}, {1, 0, 5}};
+
 /// (a11, a12, a22, b11, b12, b22) from (L0, L1, L2, c0, c1, c2).
 FormMatrix forms_of_strains() {
     FormMatrix t = FormMatrix::Zero();
@@ -138,19 +143,18 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     slopes.head<3>() = stress.head<3>() + c_lengths.transpose() * moment;
     slopes.tail<3>() = c_phi.cwiseProduct(moment);
 
-    Eigen::Matrix<double, 6, 21> measures = Eigen::Matrix<double, 6, 21>::Zero();
-    measures.topLeftCorner<3, 9>() = edge_length_gradient(k.v);
+    // Transposed, so that products run down its long columns.
+    Eigen::Matrix<double, 21, 6> measures = Eigen::Matrix<double, 21, 6>::Zero();
+    measures.topLeftCorner<9, 3>() = edge_length_gradient(k.v).transpose();
     for (int i = 0; i < 3; ++i) {
         if (!k.hinged[i]) continue;
-        const int own_slot[3] = {(i + 1) % 3, (i + 2) % 3, i};
-        const int flap_slot[3] = {(i + 2) % 3, (i + 1) % 3, 3 + i};
         for (int j = 0; j < 3; ++j) {
-            measures.block<1, 3>(3 + i, 3 * own_slot[j]) += 0.5 * k.own[i].gradient(j).transpose();
-            measures.block<1, 3>(3 + i, 3 * flap_slot[j]) += 0.5 * k.flap[i].gradient(j).transpose();
+            measures.block<3, 1>(3 * own_slot[i][j], 3 + i) += 0.5 * k.own[i].gradient(j);
+            measures.block<3, 1>(3 * flap_slot[i][j], 3 + i) += 0.5 * k.flap[i].gradient(j);
         }
-        measures(3 + i, 18 + i) = e.y_to_xi[i];
+        measures(18 + i, 3 + i) = e.y_to_xi[i];
     }
-    local.gradient.noalias() = measures.transpose() * slopes;
+    local.gradient = measures.lazyProduct(slopes);
     if (!wants_hessian(order)) return local;
 
     FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
@@ -176,24 +180,15 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
             in_measures(3 + i, 3 + i) -= moment[i] * c[i];
         }
     }
-    const Eigen::Matrix<double, 6, 21> weighted = in_measures * measures;
-    local.hessian.noalias() = measures.transpose() * weighted;
+    const Eigen::Matrix<double, 21, 6> weighted = measures.lazyProduct(in_measures);
+    local.hessian = weighted.lazyProduct(measures.transpose());
     if (order != Order::hessian) return local;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);
     for (int i = 0; i < 3; ++i) {
         if (!k.hinged[i]) continue;
-        const int own_slot[3] = {(i + 1) % 3, (i + 2) % 3, i};
-        const int flap_slot[3] = {(i + 2) % 3, (i + 1) % 3, 3 + i};
-        const double half = 0.5 * slopes[3 + i];
-        for (int r = 0; r < 3; ++r) {
-            for (int s = 0; s < 3; ++s) {
-                local.hessian.block<3, 3>(3 * own_slot[r], 3 * own_slot[s]) +=
-                    half * k.own[i].second_derivative(r, s);
-                local.hessian.block<3, 3>(3 * flap_slot[r], 3 * flap_slot[s]) +=
-                    half * k.flap[i].second_derivative(r, s);
-            }
-        }
+        k.own[i].add_second_derivative(0.5 * slopes[3 + i], own_slot[i], local.hessian);
+        k.flap[i].add_second_derivative(0.5 * slopes[3 + i], flap_slot[i], local.hessian);
     }
     return local;
 }

@@ -67,8 +67,14 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
         from = start.resume ? resume_from(*start.state, scene, model.input(), start.path)
                             : start_from(*start.state, model);
     }
+    Control timed = control;
+    if (scene.solver.time_limit_s > 0.0) {
+        timed.deadline =
+            Control::Clock::now() + std::chrono::duration_cast<Control::Clock::duration>(
+                                        std::chrono::duration<double>(scene.solver.time_limit_s));
+    }
     Release released =
-        release(scene, result.layout, std::move(model), control, from.size() > 0 ? &from : nullptr);
+        release(scene, result.layout, std::move(model), timed, from.size() > 0 ? &from : nullptr);
     result.equilibrium = std::move(released.equilibrium);
     result.warnings.insert(result.warnings.end(), released.warnings.begin(), released.warnings.end());
     result.seconds["release"] = watch.lap();

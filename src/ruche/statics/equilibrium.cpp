@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <new>
 #include <optional>
 
 #include "ruche/core/error.hpp"
+#include "ruche/core/memory.hpp"
 #include "ruche/core/parallel.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
@@ -70,6 +72,7 @@ class Newton {
     }
 
     Equilibrium run(const Eigen::VectorXd& start);
+    void iterate(Equilibrium& result);
     Equilibrium run(const LayoutShape& start) { return run(transfer(start, model(), retraction_)); }
 
   private:
@@ -118,6 +121,7 @@ class Newton {
     bool solve_step(Order order);
     bool line_search();
     bool at_rounding_limit() const;
+    std::string missing_memory() const;
     void relax_spots();
     bool leave_saddle();
     void report() const;
@@ -203,7 +207,7 @@ bool Newton::factorize(Order order, double shift) {
 /// False when that would take long or the Hessian is not positive definite.
 bool Newton::solve_with_last_factor() {
     constexpr double accuracy = 1e-3;  // of the residual
-    constexpr int most_steps = 10;
+    constexpr int most_steps = 4;
     build_matrix(Order::hessian, 0.0);
     const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
         model().size(), model().size(), static_cast<Eigen::Index>(matrix_.size()),
@@ -369,9 +373,50 @@ void Newton::report() const {
                       " mJ, residual " + short_number(residual()) + " N"});
 }
 
+/// Says so when the factor and the matrices that go with it do not fit into memory; else empty.
+std::string Newton::missing_memory() const {
+    constexpr double megabyte = 1e6;
+    constexpr double matrices = 4.0;  // exact, Gauss-Newton, a copy of each with the rigid motions removed
+    const double needed =
+        1.05 * cholesky_.factor_megabytes() +
+        matrices * sizeof(double) * static_cast<double>(model().pattern().row_index().size()) / megabyte;
+    double available = static_cast<double>(memory_available()) / megabyte;
+    if (options_.memory_limit_mb > 0.0)
+        available =
+            std::min(available, options_.memory_limit_mb - static_cast<double>(memory_in_use()) / megabyte);
+    if (needed <= available) return {};
+    char text[160];
+    std::snprintf(
+        text, sizeof text,
+        "not enough memory for this mesh: the factorisation needs %.0f MB more, %.0f MB are available",
+        needed, std::max(0.0, available));
+    return text;
+}
+
 Equilibrium Newton::run(const Eigen::VectorXd& start) {
     x_ = retraction_.meet_supports(start);
     Equilibrium result;
+    result.message = missing_memory();
+    try {
+        if (result.message.empty()) {
+            iterate(result);
+        } else {
+            terms_ = model().energy_terms(x_);
+        }
+    } catch (const std::bad_alloc&) {
+        result.message = "out of memory after " + std::to_string(iterations_) + " iterations";
+    }
+    result.x = x_;
+    result.energy = terms_;
+    result.typical_force = model().typical_force(x_);
+    result.iterations = iterations_;
+    result.factorizations = factorizations_;
+    result.health = model().health(x_);
+    result.log_extension = model().input().options.log_extension;
+    return result;
+}
+
+void Newton::iterate(Equilibrium& result) {
     int escapes = 0;
     bool stalled = false;
     for (;;) {
@@ -416,6 +461,11 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             result.message = "not converged after " + std::to_string(iterations_) + " iterations";
             break;
         }
+        if (control_.timed_out()) {
+            result.message =
+                "the time limit was reached after " + std::to_string(iterations_) + " iterations";
+            break;
+        }
         if (control_.stopped()) {
             result.status = SolveStatus::interrupted;
             result.message = "interrupted";
@@ -438,14 +488,6 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
         if (exact) adapt_blend();
         if (!stalled) relax_spots();
     }
-    result.x = x_;
-    result.energy = terms_;
-    result.typical_force = model().typical_force(x_);
-    result.iterations = iterations_;
-    result.factorizations = factorizations_;
-    result.health = model().health(x_);
-    result.log_extension = model().input().options.log_extension;
-    return result;
 }
 
 void require_held(const Model& model) {

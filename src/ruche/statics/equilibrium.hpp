@@ -14,11 +14,13 @@ namespace ruche {
 struct SolveOptions {
     double residual_tolerance_n = 1e-9;  ///< largest component of the gradient, N
     int max_iterations = 400;
-    int seed = 1;               ///< of the noise that breaks the flat state's symmetry
-    double noise_mm = 1e-3;     ///< its size, limited to 1 % of the element size
-    bool deterministic = true;  ///< same bits at any thread count: one BLAS thread
-    int threads = 0;            ///< 0 = all cores
-    bool coarse_start = true;   ///< simulate() solves on coarser meshes first
+    int seed = 1;                  ///< of the noise that breaks the flat state's symmetry
+    double noise_mm = 1e-3;        ///< its size, limited to 1 % of the element size
+    bool deterministic = true;     ///< the same bits at any thread count, which is always so
+    int threads = 0;               ///< 0 = all cores
+    bool coarse_start = true;      ///< simulate() solves on coarser meshes first
+    double time_limit_s = 0.0;     ///< of simulate()'s release; 0 = none
+    double memory_limit_mb = 0.0;  ///< of the whole process; 0 = what the machine and its limits allow
     /// Not an option of scenes: stop, without a certificate, when a step turns the sheet by less than this
     /// (root mean square, rad). For shapes that are only a start.
     double enough_rotation = 0.0;

@@ -15,11 +15,16 @@ std::span<const Field<SolveOptions>> fields<SolveOptions>() {
         {"noise_mm", &S::noise_mm, "mm", 0, 1,
          "Size of that noise, never more than 1 % of the element size. With 0 symmetric fabric stays flat."},
         {"deterministic", &S::deterministic, "", -infinity, infinity,
-         "The same bits at any number of threads. With false the factorisation uses several threads too: "
-         "faster on large "
-         "sheets when nothing else runs."},
+         "Taken for scenes that name it: a release gives the same bits at any number of threads in any "
+         "case."},
         {"coarse_start", &S::coarse_start, "", -infinity, infinity,
          "Solve on coarser meshes of the drawing first, each the start for the next finer one."},
+        {"time_limit_s", &S::time_limit_s, "s", 0.0, 1e9,
+         "The release stops after so long, with the shape that it has reached; 0 sets no limit."},
+        {"memory_limit_mb", &S::memory_limit_mb, "MB", 0.0, 1e9,
+         "The release stops before the program takes more, with the shape that it has reached; 0 takes what "
+         "the "
+         "machine has."},
         {"threads", &S::threads, "", 0, 1024, "Threads to use; 0 takes every core."},
     };
     return table;

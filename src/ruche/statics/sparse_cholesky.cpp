@@ -3,19 +3,43 @@
 #include <metis.h>
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <numeric>
 
+#include "ruche/core/memory.hpp"
+#include "ruche/core/parallel.hpp"
+
 extern "C" void openblas_set_num_threads(int threads);
 extern "C" char* openblas_get_corename();
+extern "C" void* blas_memory_alloc(int);
+extern "C" void blas_memory_free(void*);
 
 namespace ruche {
+namespace {
+
+/// Sets BLAS up: one thread, because parallelism is ours and threads of BLAS spin while they wait for each
+/// other, which is ruinous on a busy machine; and a buffer for each thread of ours at once, because BLAS
+/// tries for ever where it cannot have one later. Throws std::bad_alloc.
+void prepare_blas() {
+    constexpr std::size_t buffer_bytes = 135'000'000;  // of address space
+    static std::mutex one_at_a_time;
+    static int buffers = 0;
+    const std::scoped_lock lock(one_at_a_time);
+    openblas_set_num_threads(1);
+    if (buffers >= thread_count()) return;
+    std::vector<void*> taken(thread_count());
+    if (memory_available() < taken.size() * buffer_bytes) throw std::bad_alloc();
+    for (void*& buffer : taken) buffer = blas_memory_alloc(0);
+    for (void* buffer : taken) blas_memory_free(buffer);
+    buffers = thread_count();
+}
+
+}  // namespace
 
 SparseCholesky::SparseCholesky(const SymmetricPattern& pattern, std::vector<int> elimination_order)
     : factor_(analyse(pattern, std::move(elimination_order)), pattern) {
-    // Parallelism is ours. Threads of BLAS spin while they wait for each other, which is ruinous on a busy
-    // machine.
-    openblas_set_num_threads(1);
+    prepare_blas();
 }
 
 std::string blas_kernels() { return openblas_get_corename(); }

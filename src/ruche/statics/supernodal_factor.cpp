@@ -253,16 +253,15 @@ void SupernodalFactor::solve_forward(int s, Eigen::MatrixXd& y, int last_inside,
     const int count = static_cast<int>(y.cols());
     const int length = static_cast<int>(y.rows());
     double* own = y.data() + structure_.first_column[s];
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasNoTrans, CblasNonUnit, columns, count, 1.0,
-                panel(s), stride, own, length);
-    if (below == 0) return;
     workspace.gathered.resize(below, count);
-    if (count == 1) {
-        cblas_dgemv(CblasColMajor, CblasNoTrans, below, columns, 1.0, panel(s) + columns, stride, own, 1, 0.0,
-                    workspace.gathered.data(), 1);
-    } else {
-        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasNoTrans, below, count, columns, 1.0, panel(s) + columns,
-                    stride, own, length, 0.0, workspace.gathered.data(), below);
+    // Column by column: matrix kernels would copy the whole panel first, for a few right-hand sides.
+    for (int c = 0; c < count; ++c) {
+        double* column = own + static_cast<std::ptrdiff_t>(c) * length;
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, columns, panel(s), stride, column,
+                    1);
+        if (below == 0) continue;
+        cblas_dgemv(CblasColMajor, CblasNoTrans, below, columns, 1.0, panel(s) + columns, stride, column, 1,
+                    0.0, workspace.gathered.col(c).data(), 1);
     }
     const int* rows = structure_.panel_row(s) + columns;
     for (int c = 0; c < count; ++c) {
@@ -281,22 +280,18 @@ void SupernodalFactor::solve_backward(int s, Eigen::MatrixXd& y, Workspace& work
     const int count = static_cast<int>(y.cols());
     const int length = static_cast<int>(y.rows());
     double* own = y.data() + structure_.first_column[s];
-    if (below > 0) {
-        workspace.gathered.resize(below, count);
-        const int* rows = structure_.panel_row(s) + columns;
-        for (int c = 0; c < count; ++c) {
-            for (int r = 0; r < below; ++r) workspace.gathered(r, c) = y(rows[r], c);
-        }
-        if (count == 1) {
+    workspace.gathered.resize(below, count);
+    const int* rows = structure_.panel_row(s) + columns;
+    for (int c = 0; c < count; ++c) {
+        double* column = own + static_cast<std::ptrdiff_t>(c) * length;
+        for (int r = 0; r < below; ++r) workspace.gathered(r, c) = y(rows[r], c);
+        if (below > 0) {
             cblas_dgemv(CblasColMajor, CblasTrans, below, columns, -1.0, panel(s) + columns, stride,
-                        workspace.gathered.data(), 1, 1.0, own, 1);
-        } else {
-            cblas_dgemm(CblasColMajor, CblasTrans, CblasNoTrans, columns, count, below, -1.0,
-                        panel(s) + columns, stride, workspace.gathered.data(), below, 1.0, own, length);
+                        workspace.gathered.col(c).data(), 1, 1.0, column, 1);
         }
+        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, columns, panel(s), stride, column,
+                    1);
     }
-    cblas_dtrsm(CblasColMajor, CblasLeft, CblasLower, CblasTrans, CblasNonUnit, columns, count, 1.0, panel(s),
-                stride, own, length);
 }
 
 Eigen::MatrixXd SupernodalFactor::solve(const Eigen::MatrixXd& b) {

@@ -100,17 +100,13 @@ TEST_CASE("fabsim: dihedral angles and their derivatives agree with its hinges i
             const double area = layout_area(mesh, edge.triangle[0]) + layout_area(mesh, edge.triangle[1]);
             const double k = reference.bending_stiffness * 3.0 / area *
                              (mesh.vertices[v[1]] - mesh.vertices[v[0]]).squaredNorm();
-            const int corners[2][3] = {{0, 1, 2}, {1, 0, 3}};
+            const std::array<int, 3> corners[2] = {{0, 1, 2}, {1, 0, 3}};
             Eigen::VectorXd slope = Eigen::VectorXd::Zero(12);
             for (int side = 0; side < 2; ++side) {
-                for (int i = 0; i < 3; ++i) {
-                    const int p = corners[side][i];
-                    slope.segment<3>(3 * p) += frames[side].gradient(i);
-                    for (int j = 0; j < 3; ++j) {
-                        sums.hessian.block<3, 3>(3 * v[p], 3 * v[corners[side][j]]) +=
-                            2.0 * k * theta * frames[side].second_derivative(i, j);
-                    }
-                }
+                for (int i = 0; i < 3; ++i) slope.segment<3>(3 * corners[side][i]) += frames[side].gradient(i);
+                std::array<int, 3> vertices;
+                for (int i = 0; i < 3; ++i) vertices[i] = v[corners[side][i]];
+                frames[side].add_second_derivative(2.0 * k * theta, vertices, sums.hessian);
             }
             sums.value += k * theta * theta;
             for (int i = 0; i < 4; ++i) {
