@@ -8,10 +8,11 @@
 namespace ruche {
 namespace {
 
-constexpr int passes = 4;
-constexpr int gloss_passes = 2;  ///< gloss has detail of its own: less smoothing
+constexpr int passes = 5;
+constexpr int gloss_passes = 3;  ///< gloss has detail of its own: less smoothing
 
 float alikeness(const FilmPixel& a, const FilmPixel& b, float tolerance) {
+    if (a.part == 0.0F && b.part == 0.0F) return 1.0F;  // the ground is one plane
     const float bend = std::max(0.0F, a.normal.dot(b.normal));
     const float bend4 = bend * bend * bend * bend;
     const float off = a.normal.dot(a.position - b.position) / tolerance;
@@ -24,14 +25,14 @@ struct Smoothed {
     Vec3f light, gloss;
 };
 
-/// Weighted mean over a 5 x 5 neighbourhood whose points lie `step` apart.
+/// Weighted mean over a 3 x 3 neighbourhood whose points lie `step` apart.
 Smoothed smooth(const Film& film, int x, int y, int step, float plane_tolerance) {
-    constexpr float kernel[3] = {0.375F, 0.25F, 0.0625F};
+    constexpr float kernel[2] = {0.5F, 0.25F};
     const FilmPixel& here = film.at(x, y);
     Smoothed sum{Vec3f::Zero(), Vec3f::Zero()};
     float weights = 0.0F;
-    for (int j = -2; j <= 2; ++j)
-        for (int i = -2; i <= 2; ++i) {
+    for (int j = -1; j <= 1; ++j)
+        for (int i = -1; i <= 1; ++i) {
             const int u = x + i * step, v = y + j * step;
             if (u < 0 || v < 0 || u >= film.width || v >= film.height) continue;
             const FilmPixel& there = film.at(u, v);

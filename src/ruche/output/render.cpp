@@ -11,8 +11,8 @@ namespace ruche {
 namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
-constexpr int first_samples = 4;     ///< per picture element
-constexpr int edge_samples = 8;      ///< more where they disagree
+constexpr int first_samples = 2;     ///< per picture element
+constexpr int edge_samples = 6;      ///< more where they disagree
 constexpr float key_share = 0.54F;   ///< of the light on the open ground
 constexpr float key_radius = 0.24F;  ///< tangent of the softbox's half angle
 constexpr float through_fabric = 0.30F;
