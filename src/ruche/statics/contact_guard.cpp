@@ -13,33 +13,42 @@ bool passes_through_itself(const Model& model, const Eigen::VectorXd& x) {
     return !find_self_intersections(positions, model.input().mesh.triangles).empty();
 }
 
-ClearPath::ClearPath(const ContactSearch& search, const Eigen::VectorXd& start, const StateCurve& curve,
-                     int pieces)
-    : times_{0.0}, states_{start} {
+ClearPath::ClearPath(const ContactSearch& search, const Eigen::VectorXd& start, StateCurve curve, int pieces)
+    : curve_(std::move(curve)), search_(&search), times_{0.0}, states_{start} {
     for (int i = 1; i <= pieces; ++i) {
-        const double before = times_.back();
-        const double t = static_cast<double>(i) / pieces;
-        const Eigen::VectorXd next = curve(t);
-        const double fraction = next.allFinite() ? search.clear_fraction(states_.back(), next) : 0.0;
-        if (fraction >= 1.0) {
-            times_.push_back(t);
-            states_.push_back(next);
-            continue;
-        }
-        if (fraction > 0.0) {
-            times_.push_back(before + fraction * (t - before));
-            states_.emplace_back((1.0 - fraction) * states_.back() + fraction * next);
-        }
-        break;
+        const double end = static_cast<double>(i) / pieces;
+        if (!go_on_to(end)) break;
+        if (times_.back() < end) break;
     }
 }
 
+/// Appends the state at t, or as far before it as the way there is clear; false when that is nowhere.
+bool ClearPath::go_on_to(double t) {
+    // The curve is not straight: as far as the chord is clear it may not be.
+    constexpr double less = 0.95;
+    constexpr int most_attempts = 10;
+    const double from = times_.back();
+    for (int attempt = 0; attempt < most_attempts; ++attempt) {
+        const Eigen::VectorXd next = curve_(t);
+        const double clear = next.allFinite() ? search_->clear_fraction(states_.back(), next) : less;
+        if (clear >= 1.0) {
+            times_.push_back(t);
+            states_.push_back(next);
+            return true;
+        }
+        t = from + less * clear * (t - from);
+    }
+    return false;
+}
+
 Eigen::VectorXd ClearPath::at(double t) const {
-    if (curve_) return curve_(t);
+    if (search_ == nullptr) return curve_(t);
     if (t >= end()) return states_.back();
-    const auto after = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin();
-    const double share = (t - times_[after - 1]) / (times_[after] - times_[after - 1]);
-    return (1.0 - share) * states_[after - 1] + share * states_[after];
+    const auto before = std::upper_bound(times_.begin(), times_.end(), t) - times_.begin() - 1;
+    if (times_[before] == t) return states_[before];
+    const Eigen::VectorXd state = curve_(t);
+    const bool clear = state.allFinite() && search_->clear_fraction(states_[before], state) >= 1.0;
+    return clear ? state : states_[before];
 }
 
 ContactGuard::ContactGuard(const Model& model)

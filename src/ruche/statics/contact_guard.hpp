@@ -15,19 +15,25 @@ bool passes_through_itself(const Model& model, const Eigen::VectorXd& x);
 /// A curve of states x(t), t >= 0.
 using StateCurve = std::function<Eigen::VectorXd(double)>;
 
-/// The part of a curve that a sheet can go without passing through itself, as a chain of straight pieces; or
-/// all of a curve where nobody minds.
+/// The part of a curve that a sheet can go without passing through itself; or all of it where nobody minds.
+/// Clear means: on the straight ways between some states on the curve, close together. The states themselves lie
+/// on the curve, because the chord of a turn strains a sheet by far more than a step is to gain.
 class ClearPath {
   public:
     explicit ClearPath(StateCurve curve) : curve_(std::move(curve)), times_{1.0} {}
-    /// Follows `curve` from `start` = curve(0) to t = 1 in so many pieces, as far as the way is clear.
-    ClearPath(const ContactSearch& search, const Eigen::VectorXd& start, const StateCurve& curve, int pieces);
+    /// Follows `curve` from `start` = curve(0) to t = 1 in so many pieces, as far as the way is clear; both
+    /// `search` and what `curve` refers to must outlive this.
+    ClearPath(const ContactSearch& search, const Eigen::VectorXd& start, StateCurve curve, int pieces);
 
     double end() const { return times_.back(); }  ///< at most 1
-    Eigen::VectorXd at(double t) const;           ///< 0 <= t <= end()
+    /// The state at t, or one a little before it; 0 <= t <= end().
+    Eigen::VectorXd at(double t) const;
 
   private:
-    StateCurve curve_;  // empty when there are pieces instead
+    bool go_on_to(double t);
+
+    StateCurve curve_;
+    const ContactSearch* search_ = nullptr;
     std::vector<double> times_;
     std::vector<Eigen::VectorXd> states_;
 };
