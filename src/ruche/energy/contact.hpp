@@ -26,14 +26,14 @@ inline bool in_order(const ContactPair& a, const ContactPair& b) {
 }
 
 /// Barrier between parts of the sheet that come close (Li et al., Incremental Potential Contact, ACM Trans.
-/// Graph. 39, 2020, eq. 6, here without dimension):
+/// Graph. 39, 2020; here b and u are without dimension):
 ///
 ///     W = k sum_pairs A m b(d^2 / reach^2),   b(u) = -(u - 1)^2 ln u for u < 1, else 0
 ///
 /// twice continuously differentiable in u, infinite at contact. A sheet of area A at the distance d from
 /// another is pressed with -k A db/dd; k is an energy per area, mJ/mm^2. For two edges with directions u, v
 /// that are nearly parallel, whose closest points jump, m = c (2 - c), c = |u x v|^2 / `parallel` < 1 (their
-/// eq. 24); else m = 1. The Gauss-Newton form is k A m b'' grad(u) grad(u)^T; pairs of negative area, which
+/// mollifier); else m = 1. The Gauss-Newton form is k A m b'' grad(u) grad(u)^T; pairs of negative area, which
 /// take back what others count twice, have none in it.
 class ContactBarrier {
   public:

@@ -30,7 +30,7 @@ std::span<const Field<ModelOptions>> fields<ModelOptions>() {
          "itself. Takes longer where something touches, and nothing where nothing does."},
         {"contact_distance_mm", &M::contact_distance, "mm", 0.01, 10,
          "Distance of two parts from which on they repel each other, between the surfaces where fabric and "
-         "plastic meet; they come to rest at half of it or more. At most about the size of an element."},
+         "plastic meet; pressed together they come closer. At most about the size of an element."},
     };
     return table;
 }
