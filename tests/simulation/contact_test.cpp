@@ -37,10 +37,12 @@ void check_lies_on_itself(const Result& without, const Result& with) {
     CHECK(with.equilibrium.health.contact_pairs > 50);
     CHECK(with.equilibrium.health.smallest_gap > 0.1 * contact_distance);
     CHECK(with.equilibrium.health.smallest_gap < contact_distance);
-    // Lying on itself costs a few percent of what the sheet stores anyway, the barrier's own energy much less.
+    // Lying on itself costs a few percent of what the sheet stores anyway, the barrier's own energy much
+    // less.
     CHECK(with.equilibrium.energy.contact > 0.0);
     CHECK(with.equilibrium.energy.contact < 1e-3 * with.equilibrium.energy.total());
-    CHECK(with.equilibrium.energy.total() == doctest::Approx(without.equilibrium.energy.total()).epsilon(0.03));
+    CHECK(with.equilibrium.energy.total() ==
+          doctest::Approx(without.equilibrium.energy.total()).epsilon(0.03));
 }
 
 PrintMesh strip(double length, double thickness) {
@@ -59,12 +61,14 @@ Equilibrium released(const PrintMesh& layout, bool contact) {
 
 TEST_CASE("contact: a thin strip that rolls three times around lies beside itself") {
     const std::map<std::string, std::string> options = {{"length_mm", "60"}};
-    check_lies_on_itself(generated("strip", options, 0.4, 0.0, false), generated("strip", options, 0.4, 0.0, true));
+    check_lies_on_itself(generated("strip", options, 0.4, 0.0, false),
+                         generated("strip", options, 0.4, 0.0, true));
 }
 
 TEST_CASE("contact: a thin strip with fabric around it lies on itself") {
     const std::map<std::string, std::string> options = {{"length_mm", "60"}};
-    check_lies_on_itself(generated("strip", options, 0.4, 2.0, false), generated("strip", options, 0.4, 2.0, true));
+    check_lies_on_itself(generated("strip", options, 0.4, 2.0, false),
+                         generated("strip", options, 0.4, 2.0, true));
 }
 
 TEST_CASE("contact: a staggered sheet that rolls more than once around lies on itself") {

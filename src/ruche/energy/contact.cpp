@@ -17,10 +17,12 @@ Scalar barrier(double u) {
     if (u >= 1.0) return {};
     const double log = std::log(u);
     const double r = (u - 1.0) / u;
-    return {-(u - 1.0) * (u - 1.0) * log, -2.0 * (u - 1.0) * log - (u - 1.0) * r, -2.0 * log - 4.0 * r + r * r};
+    return {-(u - 1.0) * (u - 1.0) * log, -2.0 * (u - 1.0) * log - (u - 1.0) * r,
+            -2.0 * log - 4.0 * r + r * r};
 }
 
-/// m, a function of the directions u = b - a and v = d - c of two edges, with derivatives for the four corners.
+/// m, a function of the directions u = b - a and v = d - c of two edges, with derivatives for the four
+/// corners.
 struct Mollifier {
     double value = 1.0;
     Eigen::Matrix<double, 12, 1> gradient = Eigen::Matrix<double, 12, 1>::Zero();

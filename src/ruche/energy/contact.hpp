@@ -33,8 +33,8 @@ inline bool in_order(const ContactPair& a, const ContactPair& b) {
 /// twice continuously differentiable in u, infinite at contact. A sheet of area A at the distance d from
 /// another is pressed with -k A db/dd; k is an energy per area, mJ/mm^2. For two edges with directions u, v
 /// that are nearly parallel, whose closest points jump, m = c (2 - c), c = |u x v|^2 / `parallel` < 1 (their
-/// mollifier); else m = 1. The Gauss-Newton form is k A m b'' grad(u) grad(u)^T; pairs of negative area, which
-/// take back what others count twice, have none in it.
+/// mollifier); else m = 1. The Gauss-Newton form is k A m b'' grad(u) grad(u)^T; pairs of negative area,
+/// which take back what others count twice, have none in it.
 class ContactBarrier {
   public:
     static constexpr std::string_view name = "contact";

@@ -39,10 +39,10 @@ struct ContactSearch::Parts {
     double stretch = 1.0;
 
     std::vector<Vec3> layout;
-    std::vector<double> vertex_area, edge_area;             // mm^2 of layout; each adds up to the sheet's
+    std::vector<double> vertex_area, edge_area;  // mm^2 of layout; each adds up to the sheet's
     std::vector<std::vector<int>> triangles_of_vertex;
-    std::vector<char> on_border;                            // per vertex
-    std::vector<std::vector<int>> vertices_of, edges_of;    // per triangle: those that are its own, each once
+    std::vector<char> on_border;                          // per vertex
+    std::vector<std::vector<int>> vertices_of, edges_of;  // per triangle: those that are its own, each once
 
     Parts(const TriangleMesh& of, const MeshEdges& with, double longest_reach, double prestretch);
 
@@ -117,8 +117,12 @@ void ContactSearch::Parts::for_each_pair(int t, int u, const Visit& visit) const
             for (const int e : edges_of[other]) {
                 const Edge& edge = edges.edges[e];
                 if (edge.on_boundary() || edge.vertex[0] == v || edge.vertex[1] == v) continue;
-                visit(ContactPair{PairKind::vertex_edge, {v, edge.vertex[0], edge.vertex[1], -1}, 0.0, -face.area},
-                      [&] { return vertex_reach(v, {edge.triangle[0], edge.triangle[1]}); });
+                visit(
+                    ContactPair{
+                        PairKind::vertex_edge, {v, edge.vertex[0], edge.vertex[1], -1}, 0.0, -face.area},
+                    [&] {
+                        return vertex_reach(v, {edge.triangle[0], edge.triangle[1]});
+                    });
             }
             for (const int w : vertices_of[other]) {
                 if (on_border[w]) continue;
@@ -153,7 +157,8 @@ void ContactSearch::Parts::for_each_neighbour(std::vector<Box> boxes, const Use&
     });
 }
 
-ContactSearch::ContactSearch(const TriangleMesh& mesh, const MeshEdges& edges, double distance, double stretch)
+ContactSearch::ContactSearch(const TriangleMesh& mesh, const MeshEdges& edges, double distance,
+                             double stretch)
     : parts_(std::make_unique<const Parts>(mesh, edges, distance, stretch)) {}
 ContactSearch::~ContactSearch() = default;
 

@@ -16,9 +16,9 @@ namespace ruche {
 ///   larger pre-stretch: parts that are near each other in the sheet begin when they are half as far apart as
 ///   they are in relaxed fabric, so that a sheet that touches itself nowhere has no contact energy at all.
 /// - Where a vertex is near several triangles, inclusion and exclusion counts each point of the surface once:
-///   triangles minus inner edges plus inner vertices (Li, Ferguson, Schneider, Langlois, Zorin, Panozzo, Jiang,
-///   Kaufman, Convergent Incremental Potential Contact, 2023). With half the vertex's layout area as weight the
-///   energy is that of a pressure between two surfaces, whatever their meshes.
+///   triangles minus inner edges plus inner vertices (Li, Ferguson, Schneider, Langlois, Zorin, Panozzo,
+///   Jiang, Kaufman, Convergent Incremental Potential Contact, 2023). With half the vertex's layout area as
+///   weight the energy is that of a pressure between two surfaces, whatever their meshes.
 /// - Edges are a guard for where borders cross with no vertex near: they begin at half that distance.
 class ContactSearch {
   public:

@@ -25,8 +25,8 @@ struct ModelOptions {
     BendingNormalisation bending_normalisation = BendingNormalisation::plate;
     LaminateThickness laminate_thickness = LaminateThickness::true_thickness;
     ShearStrain shear_strain = ShearStrain::engineering;
-    double log_extension = 1e-3;  ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
-    bool contact = false;         ///< parts of the sheet that come close repel each other
+    double log_extension = 1e-3;    ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
+    bool contact = false;           ///< parts of the sheet that come close repel each other
     double contact_distance = 0.5;  ///< mm, from which on
 };
 
@@ -109,8 +109,8 @@ class Model {
     /// Ends of the k-th edge unknown's edge and the two vertices opposite it.
     std::array<int, 4> vertices_of_edge_unknown(int k) const;
 
-    /// The pairs of parts that contact acts between; none in a new model, whatever the options say (the solver
-    /// finds them, see ContactSearch). Changes the pattern.
+    /// The pairs of parts that contact acts between; none in a new model, whatever the options say (the
+    /// solver finds them, see ContactSearch). Changes the pattern.
     void set_contacts(std::vector<ContactPair> pairs);
     const std::vector<ContactPair>& contacts() const;
 

@@ -58,7 +58,8 @@ ClosestPoints vertex_to_triangle(const PairCorners& x) {
         closest.freedom = 2;
         return closest;
     }
-    return nearest<3>({vertex_to_edge(x, 0, 1, 2), vertex_to_edge(x, 0, 2, 3), vertex_to_edge(x, 0, 3, 1)}, x);
+    return nearest<3>({vertex_to_edge(x, 0, 1, 2), vertex_to_edge(x, 0, 2, 3), vertex_to_edge(x, 0, 3, 1)},
+                      x);
 }
 
 ClosestPoints edge_to_edge(const PairCorners& x) {

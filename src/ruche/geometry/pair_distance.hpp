@@ -7,8 +7,9 @@
 
 namespace ruche {
 
-/// Two parts of a surface and the order of their corners: a vertex and a triangle (v, a, b, c), a vertex and an
-/// edge (v, a, b), two vertices (v, w), two edges (a, b, c, d). Corners that a kind does not have are ignored.
+/// Two parts of a surface and the order of their corners: a vertex and a triangle (v, a, b, c), a vertex and
+/// an edge (v, a, b), two vertices (v, w), two edges (a, b, c, d). Corners that a kind does not have are
+/// ignored.
 enum class PairKind { vertex_triangle, vertex_edge, vertex_vertex, edge_edge };
 
 using PairCorners = std::array<Vec3, 4>;
@@ -45,11 +46,11 @@ Eigen::Matrix<double, 12, 1> squared_distance_gradient(const ClosestPoints& clos
 Eigen::Matrix<double, 12, 12> squared_distance_hessian(const ClosestPoints& closest, const Vec3& r,
                                                        const PairCorners& x);
 
-/// How far the two parts can move on straight lines from `x` to `y` at the same time, as a fraction of the way
-/// (1 = all of it), so that their distance, which is above `gap` at `x`, stays above it all the way. Never too
-/// large; it ends where the distance is between 1 and 1.25 `gap`, or after 100 bounds on it (additive
-/// continuous collision detection: Li, Kaufman, Jiang, Codimensional Incremental Potential Contact, ACM Trans.
-/// Graph. 40, 2021).
+/// How far the two parts can move on straight lines from `x` to `y` at the same time, as a fraction of the
+/// way (1 = all of it), so that their distance, which is above `gap` at `x`, stays above it all the way.
+/// Never too large; it ends where the distance is between 1 and 1.25 `gap`, or after 100 bounds on it
+/// (additive continuous collision detection: Li, Kaufman, Jiang, Codimensional Incremental Potential Contact,
+/// ACM Trans. Graph. 40, 2021).
 double clear_fraction(PairKind kind, const PairCorners& x, const PairCorners& y, double gap);
 
 }  // namespace ruche

@@ -81,8 +81,7 @@ Equilibrium release_with_contact(const Scene& scene, const PrintMesh& layout, co
                                  const Control& control) {
     Scene alone = scene;
     alone.model.contact = false;
-    const Equilibrium first =
-        release_from_flat(alone, layout, Model(scene_model(alone, layout)), control);
+    const Equilibrium first = release_from_flat(alone, layout, Model(scene_model(alone, layout)), control);
     if (first.status == SolveStatus::interrupted || !touches_itself(model, first.x)) return first;
     Equilibrium end = after(first, solve(model, to_the_end(scene), control));
     end.iterations = end.levels.back().iterations;
@@ -127,7 +126,8 @@ Release release(const Scene& scene, const PrintMesh& layout, Model model, const 
     if (start != nullptr && scene.model.contact && passes_through_itself(model, *start)) {
         start = nullptr;
         warnings.emplace_back(
-            "the given start passes through itself, which contact cannot undo: the sheet is released from the "
+            "the given start passes through itself, which contact cannot undo: the sheet is released from "
+            "the "
             "flat state instead");
     }
     Equilibrium end = first_equilibrium(scene, layout, model, control, start);

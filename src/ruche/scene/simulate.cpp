@@ -38,9 +38,10 @@ std::string self_intersection_warning(const Result& result) {
         "the sheet passes through itself at {} pairs of triangles, {}: first at ({:.4g}, {:.4g}, {:.4g}) mm, "
         "{} through {}; more places are in the report's health",
         result.self_intersections.size(),
-        result.scene.model.contact ? "although contact is on" : "model.contact = true would keep it from that",
-        first.place.x(), first.place.y(), first.place.z(),
-        carrier(result.layout, first.triangles[0]), carrier(result.layout, first.triangles[1]));
+        result.scene.model.contact ? "although contact is on"
+                                   : "model.contact = true would keep it from that",
+        first.place.x(), first.place.y(), first.place.z(), carrier(result.layout, first.triangles[0]),
+        carrier(result.layout, first.triangles[1]));
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ bool passes_through_itself(const Model& model, const Eigen::VectorXd& x);
 using StateCurve = std::function<Eigen::VectorXd(double)>;
 
 /// The part of a curve that a sheet can go without passing through itself; or all of it where nobody minds.
-/// Clear means: on the straight ways between some states on the curve, close together. The states themselves lie
-/// on the curve, because the chord of a turn strains a sheet by far more than a step is to gain.
+/// Clear means: on the straight ways between some states on the curve, close together. The states themselves
+/// lie on the curve, because the chord of a turn strains a sheet by far more than a step is to gain.
 class ClearPath {
   public:
     explicit ClearPath(StateCurve curve) : curve_(std::move(curve)), times_{1.0} {}

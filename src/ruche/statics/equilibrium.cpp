@@ -210,9 +210,9 @@ bool Newton::factorize(Order order, double shift) {
     build_matrix(order, shift);
     if (pattern_is_new_) {
         vertex_order_ = vertex_elimination_order(model().pattern());
-        cholesky_ = SparseCholesky(
-            {model().size(), model().pattern().column_start(), model().pattern().row_index()},
-            elimination_order(model(), vertex_order_));
+        cholesky_ =
+            SparseCholesky({model().size(), model().pattern().column_start(), model().pattern().row_index()},
+                           elimination_order(model(), vertex_order_));
         pattern_is_new_ = false;
     }
     ++factorizations_;

@@ -47,9 +47,7 @@ ContactSearch search_of(const Model& model) {
 }
 
 double barrier(double u) { return -(u - 1.0) * (u - 1.0) * std::log(u); }
-double barrier_slope(double u) {
-    return -2.0 * (u - 1.0) * std::log(u) - (u - 1.0) * (u - 1.0) / u;
-}
+double barrier_slope(double u) { return -2.0 * (u - 1.0) * std::log(u) - (u - 1.0) * (u - 1.0) / u; }
 
 /// k of the model, mJ/mm^2.
 constexpr double stiffness = 0.01 * gap_distance;
@@ -58,7 +56,8 @@ constexpr double stiffness = 0.01 * gap_distance;
 Model rolled_strip() {
     ModelInput input;
     input.mesh = rectangle_mesh(MeshKind::jittered, {.length = 30.0, .width = 1.5, .across = 2});
-    for (int t = 0; t < input.mesh.triangle_count(); ++t) input.print.push_back({.front = t % 7 < 4 ? 0.4 : 0.0});
+    for (int t = 0; t < input.mesh.triangle_count(); ++t)
+        input.print.push_back({.front = t % 7 < 4 ? 0.4 : 0.0});
     input.options.contact = true;
     input.options.contact_distance = gap_distance;
     return Model(std::move(input));
@@ -88,7 +87,8 @@ TEST_CASE("contact search: two flat sheets have the energy of a pressure, whatev
             const Eigen::VectorXd x = stacked(model, d);
             model.set_contacts(search_of(model).pairs(x, 1.0));
             const double u = d * d / (gap_distance * gap_distance);
-            CHECK(model.energy_terms(x).contact == doctest::Approx(stiffness * 20.0 * barrier(u)).epsilon(1e-9));
+            CHECK(model.energy_terms(x).contact ==
+                  doctest::Approx(stiffness * 20.0 * barrier(u)).epsilon(1e-9));
             // The force that presses them together.
             const Eigen::VectorXd with = model.gradient(x);
             model.set_contacts({});

@@ -26,7 +26,8 @@ StateCurve rolling(const Model& model) {
         const double curvature = t * 4.0 * std::numbers::pi / 20.0;
         for (int v = 0; v < model.vertex_count() && curvature > 0.0; ++v) {
             const double angle = curvature * x[3 * v];
-            x.segment<3>(3 * v) = Vec3(std::sin(angle) / curvature, x[3 * v + 1], (1.0 - std::cos(angle)) / curvature);
+            x.segment<3>(3 * v) =
+                Vec3(std::sin(angle) / curvature, x[3 * v + 1], (1.0 - std::cos(angle)) / curvature);
         }
         return x;
     };
