@@ -61,7 +61,7 @@ struct ContactSearch::Parts {
         return at;
     }
     double reach_in_layout(const ContactPair& pair, double longest) const {
-        return std::min(longest, ruche::distance(pair.kind, in_layout(pair)) / (2.0 * stretch));
+        return std::min(longest, ruche::distance(pair.kind, in_layout(pair)) / (4.0 * stretch));
     }
     double vertex_reach(int v, const std::vector<int>& triangles) const;
 };

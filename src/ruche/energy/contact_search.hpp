@@ -12,9 +12,10 @@ namespace ruche {
 /// Finds which parts of a sheet may touch, and how far it can move before they do.
 ///
 /// Every vertex is paired with every triangle, every edge with every edge, as far as they share no vertex.
-/// - Two parts repel each other from min(distance, l / (2 s)) on, l their distance in the layout and s the
-///   larger pre-stretch: parts that are near each other in the sheet begin when they are half as far apart as
-///   they are in relaxed fabric, so that a sheet that touches itself nowhere has no contact energy at all.
+/// - Two parts repel each other from min(distance, l / (4 s)) on, l their distance in the layout and s the
+///   larger pre-stretch: parts that are near each other in the sheet begin when they are a quarter as far
+///   apart as they are in relaxed fabric, so that a sheet that touches itself nowhere has no contact energy
+///   at all.
 /// - Where a vertex is near several triangles, inclusion and exclusion counts each point of the surface once:
 ///   triangles minus inner edges plus inner vertices (Li, Ferguson, Schneider, Langlois, Zorin, Panozzo,
 ///   Jiang, Kaufman, Convergent Incremental Potential Contact, 2023). With half the vertex's layout area as
