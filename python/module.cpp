@@ -262,7 +262,7 @@ void bind_model(py::module_& m) {
                 const EnergyTerms terms = self.energy_terms(x);
                 return py::dict("fabric_membrane"_a = terms.fabric_membrane,
                                 "fabric_bending"_a = terms.fabric_bending, "plastic"_a = terms.plastic,
-                                "gravity"_a = terms.gravity);
+                                "gravity"_a = terms.gravity, "contact"_a = terms.contact);
             },
             "x"_a, "mJ by term");
 }

@@ -7,6 +7,7 @@
 
 #include "ruche/core/fields.hpp"
 #include "ruche/energy/assembly.hpp"
+#include "ruche/energy/contact.hpp"
 #include "ruche/geometry/triangle_mesh.hpp"
 #include "ruche/material/material.hpp"
 #include "ruche/meshing/print_mesh.hpp"
@@ -24,7 +25,9 @@ struct ModelOptions {
     BendingNormalisation bending_normalisation = BendingNormalisation::plate;
     LaminateThickness laminate_thickness = LaminateThickness::true_thickness;
     ShearStrain shear_strain = ShearStrain::engineering;
-    double log_extension = 1e-3;  ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
+    double log_extension = 1e-3;    ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
+    bool contact = false;           ///< parts of the sheet that come close repel each other
+    double contact_distance = 0.5;  ///< mm, from which on
 };
 
 template <>
@@ -70,7 +73,8 @@ struct EnergyTerms {
     double fabric_bending = 0.0;
     double plastic = 0.0;  ///< the whole laminate, its fabric ply included
     double gravity = 0.0;  ///< with dead forces and the table
-    double total() const { return fabric_membrane + fabric_bending + plastic + gravity; }
+    double contact = 0.0;  ///< between parts of the sheet
+    double total() const { return fabric_membrane + fabric_bending + plastic + gravity + contact; }
 };
 
 /// What a careful reader of a result has to know about a state.
@@ -81,6 +85,8 @@ struct Health {
     double max_dihedral_deg = 0.0;
     double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
     int self_intersections = 0;          ///< pairs of triangles that pass through each other
+    int contact_pairs = 0;               ///< parts of the sheet that repel each other
+    double smallest_gap = infinity;      ///< mm, between those
 };
 
 /// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
@@ -102,6 +108,11 @@ class Model {
     const NodePattern& pattern() const;
     /// Ends of the k-th edge unknown's edge and the two vertices opposite it.
     std::array<int, 4> vertices_of_edge_unknown(int k) const;
+
+    /// The pairs of parts that contact acts between; none in a new model, whatever the options say (the
+    /// solver finds them, see ContactSearch). Changes the pattern.
+    void set_contacts(std::vector<ContactPair> pairs);
+    const std::vector<ContactPair>& contacts() const;
 
     /// Flat as printed, without noise; edge unknowns zero.
     Eigen::VectorXd initial() const;
@@ -125,7 +136,7 @@ class Model {
             std::vector<int> local;
         };
         std::vector<int> unknowns_;
-        std::array<Elements, 4> terms_;
+        std::array<Elements, 5> terms_;
     };
     /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
     Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;

@@ -25,6 +25,12 @@ std::span<const Field<ModelOptions>> fields<ModelOptions>() {
         {"log_extension", &M::log_extension, "", 1e-9, 0.1,
          "The fabric's stress goes on linearly from Green strain gamma minus this; the paper has 1e-6, "
          "which is too stiff to solve with."},
+        {"contact", &M::contact, "", -infinity, infinity,
+         "Parts of the sheet that come close repel each other, so that a rolled sheet cannot pass through "
+         "itself. Takes longer where something touches, and nothing where nothing does."},
+        {"contact_distance_mm", &M::contact_distance, "mm", 0.01, 10,
+         "Distance of two parts from which on they repel each other, between the surfaces where fabric and "
+         "plastic meet; pressed together they come closer. At most about the size of an element."},
     };
     return table;
 }

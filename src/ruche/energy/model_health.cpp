@@ -68,6 +68,13 @@ Health Model::health(const Eigen::VectorXd& x) const {
         health.max_edge_rotation_deg =
             std::max(health.max_edge_rotation_deg, laminate.max_normal_rotation(e, unknowns) * degrees);
     }
+    for (const ContactPair& pair : contacts()) {
+        const double gap = distance(pair.kind, corners(pair, unknowns));
+        if (gap >= pair.reach) continue;
+        // What only takes back a double count is no pair of its own.
+        health.contact_pairs += pair.area > 0.0 ? 1 : 0;
+        health.smallest_gap = std::min(health.smallest_gap, gap);
+    }
     return health;
 }
 

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "ruche/energy/contact.hpp"
 #include "ruche/energy/fabric_bending.hpp"
 #include "ruche/energy/fabric_membrane.hpp"
 #include "ruche/energy/laminate_term.hpp"
@@ -24,17 +25,20 @@ struct Model::Parts {
     std::unique_ptr<TermAssembly<FabricBending>> bending;
     std::unique_ptr<TermAssembly<LaminateTerm>> laminate;
     std::unique_ptr<TermAssembly<TableContact>> table;
+    std::unique_ptr<TermAssembly<ContactBarrier>> contact;
     Eigen::VectorXd dead_load;  // N, on positions: gravity and nodal forces
 
     Unknowns unknowns(const Eigen::VectorXd& x) const { return {x.data(), input.mesh.vertex_count()}; }
 
     template <class Visit>
     void for_each_term(const Visit& visit) const {
-        visit(*membrane), visit(*bending), visit(*laminate), visit(*table);
+        visit(*membrane), visit(*bending), visit(*laminate), visit(*table), visit(*contact);
     }
 
     void build_elastic_terms();
     void build_loads();
+    void build_contact(std::vector<ContactPair> pairs);
+    void build_pattern();
 };
 
 }  // namespace ruche

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
 
 #include "ruche/core/parallel.hpp"
+#include "ruche/geometry/box_tree.hpp"
 
 namespace ruche {
 namespace {
@@ -118,96 +118,7 @@ bool pass_through(const GridPositions& grid, std::span<const Vec3> x, const Tria
     return true;
 }
 
-struct Box {
-    Grid low = {std::numeric_limits<std::int64_t>::max(), std::numeric_limits<std::int64_t>::max(),
-                std::numeric_limits<std::int64_t>::max()};
-    Grid high = {-1, -1, -1};
-
-    void add(const Grid& p) {
-        for (int k = 0; k < 3; ++k) {
-            low[k] = std::min(low[k], p[k]);
-            high[k] = std::max(high[k], p[k]);
-        }
-    }
-    void add(const Box& box) {
-        add(box.low);
-        add(box.high);
-    }
-    bool meets(const Box& other) const {
-        return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
-               other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
-    }
-};
-
-/// A binary tree of boxes over the triangles, split at the median of the longest side; its leaves are runs of
-/// `order`.
-class BoxTree {
-  public:
-    explicit BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
-        std::iota(order_.begin(), order_.end(), 0);
-        // Triangles with a vertex that is not finite have the empty box and are left out.
-        std::erase_if(order_, [&](int t) { return boxes_[t].high[0] < 0; });
-        if (!order_.empty()) build(0, static_cast<int>(order_.size()));
-    }
-
-    /// Calls visit(u) for every triangle u > t whose box meets that of t.
-    template <class Visit>
-    void later_neighbours(int t, const Visit& visit) const {
-        if (nodes_.empty()) return;
-        std::array<int, 64> stack;  // the tree is balanced: depth below 32
-        int top = 0;
-        stack[top++] = 0;
-        while (top > 0) {
-            const Node& node = nodes_[stack[--top]];
-            if (!node.box.meets(boxes_[t])) continue;
-            if (node.right > 0) {
-                stack[top++] = node.right;
-                stack[top++] = static_cast<int>(&node - nodes_.data()) + 1;
-                continue;
-            }
-            for (int i = node.begin; i < node.end; ++i) {
-                const int u = order_[i];
-                if (u > t && boxes_[u].meets(boxes_[t])) visit(u);
-            }
-        }
-    }
-
-    const std::vector<int>& order() const { return order_; }
-
-  private:
-    static constexpr int leaf_size = 4;
-
-    struct Node {
-        Box box;
-        int right = 0;  ///< its left child follows it; 0 for a leaf
-        int begin = 0;
-        int end = 0;
-    };
-
-    void build(int begin, int end) {
-        const int self = static_cast<int>(nodes_.size());
-        Box box;
-        for (int i = begin; i < end; ++i) box.add(boxes_[order_[i]]);
-        nodes_.push_back({box, 0, begin, end});
-        if (end - begin <= leaf_size) return;
-        int axis = 0;
-        for (int k = 1; k < 3; ++k) {
-            if (box.high[k] - box.low[k] > box.high[axis] - box.low[axis]) axis = k;
-        }
-        const auto centre = [&](int t) { return boxes_[t].low[axis] + boxes_[t].high[axis]; };
-        const int middle = (begin + end) / 2;
-        std::nth_element(
-            order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-            [&](int s, int t) { return centre(s) != centre(t) ? centre(s) < centre(t) : s < t; });
-        build(begin, middle);
-        nodes_[self].right = static_cast<int>(nodes_.size());
-        build(middle, end);
-    }
-
-    std::vector<Box> boxes_;
-    std::vector<int> order_;
-    std::vector<Node> nodes_;
-};
+using Box = AxisBox<std::int64_t>;
 
 bool share_edge(const Triangle& a, const Triangle& b) {
     int shared = 0;
@@ -222,10 +133,11 @@ std::vector<Intersection> find_self_intersections(std::span<const Vec3> position
     const GridPositions grid(positions);
     std::vector<Box> boxes(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
+        // Triangles with a vertex that is not finite keep the empty box, which meets none.
         if (!std::ranges::all_of(triangles[t], [&](int v) { return grid.finite(v); })) continue;
         for (const int v : triangles[t]) boxes[t].add(grid[v]);
     }
-    const BoxTree tree(std::move(boxes));
+    const BoxTree<std::int64_t> tree(std::move(boxes));
 
     // Neighbours in the tree's order are neighbours in space: good for the cache, and even work per chunk.
     constexpr std::size_t chunk = 512;

@@ -50,6 +50,7 @@ Caption make_caption(const Result& result, const std::string& title) {
             caption.alarm = result.equilibrium.stable ? "" : "NOT STABLE";
             break;
     }
+    if (caption.alarm.empty() && !result.self_intersections.empty()) caption.alarm = "PASSES THROUGH ITSELF";
     return caption;
 }
 

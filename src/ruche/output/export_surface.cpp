@@ -53,6 +53,7 @@ std::vector<DataColumn> face_columns(const SurfaceFields& fields) {
     add_curvature(data, fields.face_curvature);
     data.push_back(column("stretch_max", Kind::float32, fields.stretch_max, same));
     data.push_back(column("stretch_min", Kind::float32, fields.stretch_min, same));
+    data.push_back(column("self_intersecting", Kind::int32, fields.passes_through, same));
     if (!fields.energy_density.empty())
         data.push_back(column("energy_density_mJ_per_mm2", Kind::float32, fields.energy_density, same));
     return data;

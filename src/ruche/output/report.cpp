@@ -101,7 +101,8 @@ Json state_of(const Equilibrium& equilibrium) {
                          {"fabric_membrane", energy.fabric_membrane},
                          {"fabric_bending", energy.fabric_bending},
                          {"plastic", energy.plastic},
-                         {"gravity", energy.gravity}};
+                         {"gravity", energy.gravity},
+                         {"contact", energy.contact}};
     json["residual_N"] = equilibrium.residual;
     json["typical_force_N"] = equilibrium.typical_force;
     return json;
@@ -142,6 +143,8 @@ Json health_of(const Result& result) {
             {"max_edge_rotation_deg", health.max_edge_rotation_deg},
             {"elements_beyond_law", health.beyond_law},
             {"self_intersections", health.self_intersections},
+            {"contact_pairs", health.contact_pairs},
+            {"smallest_gap_mm", health.smallest_gap},  // infinite when nothing touches: becomes null
             {"self_intersection_places", places_of(result)}};
 }
 

@@ -108,7 +108,8 @@ Stage make_stage(const Result& result, const std::vector<Vec3>& positions, const
 
     Stage stage{.scene = RayScene(std::move(parts)),
                 .per_mm = static_cast<float>(placement.scale),
-                .printed_behind = std::move(behind)};
+                .printed_behind = std::move(behind),
+                .passes_through = passes_through_itself(result)};
     float lowest = 1.0F;
     for (const Relief& part : stage.scene.parts())
         for (const Triangle& t : part.triangles)
@@ -155,9 +156,13 @@ Surfel look_at(const Stage& stage, const Ray& ray, const RayHit& hit, float pixe
     surfel.lifted = lift(surfel.position, weights, corner, normal);
     surfel.normal = smooth;
     surfel.albedo = plain_albedo(surfel.look);
+    const int source = part.source[hit.triangle];
+    if (stage.passes_through[source] != 0) {
+        surfel.albedo = linear(palette::alarm);
+        return surfel;
+    }
     if (!surfel.is_fabric()) return surfel;
 
-    const int source = part.source[hit.triangle];
     if (surfel.look == Look::fabric_front && stage.printed_behind[source] != 0)
         surfel.albedo = 0.62F * surfel.albedo + 0.1F * plain_albedo(Look::plastic_back);
     // Stitches per picture element decide how much of the knit can be shown without moire.

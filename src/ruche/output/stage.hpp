@@ -16,6 +16,7 @@ struct Stage {
     float ground = -1.0F;
     float per_mm = 1.0F;               ///< stage units per mm
     std::vector<char> printed_behind;  ///< per layout triangle: print on the back only shows through
+    std::vector<char> passes_through;  ///< per layout triangle: the sheet passes through itself there
     std::vector<float> stretch;        ///< per layout triangle: square root of released over printed area
     std::vector<Vec3f> outline;        ///< points that a camera has to see
 };

@@ -55,6 +55,7 @@ SurfaceFields surface_fields(const Result& result, std::span<const double> energ
     const bool own_moduli = std::ranges::any_of(result.layout.print, [](const Print& print) {
         return print.front_modulus != 0.0 || print.back_modulus != 0.0;
     });
+    fields.passes_through = passes_through_itself(result);
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Print print = result.layout.print.empty() ? Print{} : result.layout.print[t];
         fields.front_mm.push_back(print.front);

@@ -28,6 +28,7 @@ struct SurfaceFields {
     std::vector<VertexCurvature> face_curvature;  ///< mean of the three vertices, 1/mm
     std::vector<double> stretch_max;              ///< principal stretches: released over printed length
     std::vector<double> stretch_min;
+    std::vector<char> passes_through;    ///< 1: the sheet passes through itself there
     std::vector<double> energy_density;  ///< mJ per mm^2 of layout; empty when not given
 };
 

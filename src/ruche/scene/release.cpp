@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "ruche/scene/build.hpp"
+#include "ruche/statics/contact_guard.hpp"
 
 namespace ruche {
 namespace {
@@ -71,6 +72,23 @@ Equilibrium release_from_flat(const Scene& scene, const PrintMesh& layout, const
     return end;
 }
 
+bool touches_itself(const Model& model, const Eigen::VectorXd& x) {
+    return passes_through_itself(model, x) || ContactGuard(model).touches(x);
+}
+
+/// The same with contact between parts of the sheet, whose model is `model`.
+Equilibrium release_with_contact(const Scene& scene, const PrintMesh& layout, const Model& model,
+                                 const Control& control) {
+    Scene alone = scene;
+    alone.model.contact = false;
+    const Equilibrium first = release_from_flat(alone, layout, Model(scene_model(alone, layout)), control);
+    if (first.status == SolveStatus::interrupted || !touches_itself(model, first.x)) return first;
+    Equilibrium end = after(first, solve(model, to_the_end(scene), control));
+    end.iterations = end.levels.back().iterations;
+    end.factorizations = end.levels.back().factorizations;
+    return end;
+}
+
 /// A sheet that rests on a table is released in free space first and then laid down: from the flat state,
 /// pressed on the table, it could not curl.
 Equilibrium lay_on_table(const Scene& scene, const PrintMesh& layout, const Model& model,
@@ -78,7 +96,8 @@ Equilibrium lay_on_table(const Scene& scene, const PrintMesh& layout, const Mode
     Scene weightless = scene;
     weightless.gravity = {};
     const Model free(scene_model(weightless, layout));
-    Equilibrium first = release_from_flat(weightless, layout, free, control);
+    Equilibrium first = scene.model.contact ? release_with_contact(weightless, layout, free, control)
+                                            : release_from_flat(weightless, layout, free, control);
     if (first.status != SolveStatus::converged) return first;
     const ModelInput& input = model.input();
     const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
@@ -95,6 +114,7 @@ Equilibrium first_equilibrium(const Scene& scene, const PrintMesh& layout, const
                               const Control& control, const Eigen::VectorXd* start) {
     if (start != nullptr) return solve(model, to_the_end(scene), control, start);
     if (model.input().table.present) return lay_on_table(scene, layout, model, control);
+    if (scene.model.contact) return release_with_contact(scene, layout, model, control);
     return release_from_flat(scene, layout, model, control);
 }
 
@@ -102,8 +122,15 @@ Equilibrium first_equilibrium(const Scene& scene, const PrintMesh& layout, const
 
 Release release(const Scene& scene, const PrintMesh& layout, Model model, const Control& control,
                 const Eigen::VectorXd* start) {
-    Equilibrium end = first_equilibrium(scene, layout, model, control, start);
     std::vector<std::string> warnings;
+    if (start != nullptr && scene.model.contact && passes_through_itself(model, *start)) {
+        start = nullptr;
+        warnings.emplace_back(
+            "the given start passes through itself, which contact cannot undo: the sheet is released from "
+            "the "
+            "flat state instead");
+    }
+    Equilibrium end = first_equilibrium(scene, layout, model, control, start);
     if (end.log_extension != scene.model.log_extension) {
         ModelInput narrowed = model.input();
         narrowed.options.log_extension = end.log_extension;

@@ -25,4 +25,7 @@ struct Result {
     std::map<std::string, double> seconds;  ///< by phase: read, mesh, release, ...
 };
 
+/// Per triangle: 1 where the sheet passes through itself.
+std::vector<char> passes_through_itself(const Result& result);
+
 }  // namespace ruche

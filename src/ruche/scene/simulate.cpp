@@ -35,13 +35,24 @@ std::string carrier(const PrintMesh& layout, int triangle) {
 std::string self_intersection_warning(const Result& result) {
     const Intersection& first = result.self_intersections.front();
     return fmt::format(
-        "the sheet passes through itself at {} pairs of triangles, contact is not simulated: first at "
-        "({:.4g}, {:.4g}, {:.4g}) mm, {} through {}; more places are in the report's health",
-        result.self_intersections.size(), first.place.x(), first.place.y(), first.place.z(),
-        carrier(result.layout, first.triangles[0]), carrier(result.layout, first.triangles[1]));
+        "the sheet passes through itself at {} pairs of triangles, {}: first at ({:.4g}, {:.4g}, {:.4g}) mm, "
+        "{} through {}; more places are in the report's health",
+        result.self_intersections.size(),
+        result.scene.model.contact ? "although contact is on"
+                                   : "model.contact = true would keep it from that",
+        first.place.x(), first.place.y(), first.place.z(), carrier(result.layout, first.triangles[0]),
+        carrier(result.layout, first.triangles[1]));
 }
 
 }  // namespace
+
+std::vector<char> passes_through_itself(const Result& result) {
+    std::vector<char> marks(result.layout.mesh.triangles.size(), 0);
+    for (const Intersection& pair : result.self_intersections) {
+        for (const int t : pair.triangles) marks[static_cast<std::size_t>(t)] = 1;
+    }
+    return marks;
+}
 
 Result simulate(const Scene& scene, const Control& control, const Start& start) {
     Stopwatch watch;

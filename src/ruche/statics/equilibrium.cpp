@@ -11,6 +11,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/core/memory.hpp"
 #include "ruche/core/parallel.hpp"
+#include "ruche/statics/contact_guard.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
 #include "ruche/statics/rigid_motions.hpp"
@@ -69,6 +70,10 @@ class Newton {
         for (const Support& support : model.input().supports) {
             for (int c = 0; c < 3; ++c) held_[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
         }
+        if (model.input().options.contact) {
+            own_.emplace(model.input());
+            contact_.emplace(model);
+        }
     }
 
     Equilibrium run(const Eigen::VectorXd& start);
@@ -104,7 +109,7 @@ class Newton {
     }
     double energy_scale() const {
         return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
-               std::abs(terms_.gravity);
+               std::abs(terms_.gravity) + std::abs(terms_.contact);
     }
 
     /// The Gauss-Newton form's share in the matrix where the exact Hessian is not positive definite: what it
@@ -113,6 +118,8 @@ class Newton {
     static constexpr double blend_factor = 4.0;
 
     bool narrow_extension();
+    ClearPath follow(const Eigen::VectorXd& direction, double length);
+    void cover_contacts(const Eigen::VectorXd& x);
     void build_matrix(Order order, double shift);
     bool factorize(Order order, double shift = 0.0);
     bool factorize_blend();
@@ -126,10 +133,11 @@ class Newton {
     bool leave_saddle();
     void report() const;
 
-    const Model& model() const { return narrowed_ ? *narrowed_ : *original_; }
+    const Model& model() const { return own_ ? *own_ : *original_; }
 
     const Model* original_;
-    std::optional<Model> narrowed_;  // the same sheet with the narrower linear extension of the law
+    std::optional<Model> own_;  // the same sheet with the narrower extension of the law, or with contacts
+    std::optional<ContactGuard> contact_;
     SolveOptions options_;
     const Control& control_;
     RigidMotions rigid_;
@@ -146,6 +154,7 @@ class Newton {
     AssembledSums trial_;
     EnergyTerms terms_;
     std::vector<double> matrix_;
+    bool pattern_is_new_ = false;  // since the last factorisation
     double shift_ = 0.0;           // of the last indefinite Hessian, N/mm
     double blend_ = 0.0;           // share of the Gauss-Newton form in the matrix
     double step_length_ = 1.0;     // of the last line search; 1 = Newton's step
@@ -158,14 +167,31 @@ class Newton {
 /// Exchanges the model for one with a narrower linear extension when the shape leans on it.
 bool Newton::narrow_extension() {
     const double narrow = options_.narrow_log_extension;
-    if (narrow == 0.0 || narrowed_ || narrow >= model().input().options.log_extension ||
+    if (narrow == 0.0 || narrow >= model().input().options.log_extension ||
         model().elements_beyond_law(x_) == 0) {
         return false;
     }
     ModelInput input = model().input();
     input.options.log_extension = narrow;
-    narrowed_.emplace(std::move(input));
+    std::vector<ContactPair> contacts = model().contacts();
+    own_.emplace(std::move(input));
+    if (contact_) own_->set_contacts(std::move(contacts));
     return true;
+}
+
+/// The curve from the present state along a direction, `length` of it, as far as the way is clear.
+ClearPath Newton::follow(const Eigen::VectorXd& direction, double length) {
+    const StateCurve curve = [this, &direction, length](double t) {
+        return retraction_(x_, direction, t * length);
+    };
+    if (!contact_) return ClearPath(curve);
+    return contact_->follow(x_, curve, std::abs(length) * retraction_.rms_rotation(x_, direction));
+}
+
+/// Before an energy at `x` is asked for: the model must know what touches there, and still at the present
+/// state.
+void Newton::cover_contacts(const Eigen::VectorXd& x) {
+    if (contact_ && contact_->cover(*own_, x_, x)) pattern_is_new_ = true;
 }
 
 void Newton::build_matrix(Order order, double shift) {
@@ -197,6 +223,13 @@ void Newton::build_matrix(Order order, double shift) {
 
 bool Newton::factorize(Order order, double shift) {
     build_matrix(order, shift);
+    if (pattern_is_new_) {
+        vertex_order_ = vertex_elimination_order(model().pattern());
+        cholesky_ =
+            SparseCholesky({model().size(), model().pattern().column_start(), model().pattern().row_index()},
+                           elimination_order(model(), vertex_order_));
+        pattern_is_new_ = false;
+    }
     ++factorizations_;
     const bool definite = cholesky_.factorize(matrix_);
     factor_is_near_ = definite && order == Order::hessian && shift == 0.0;
@@ -285,10 +318,12 @@ bool Newton::line_search() {
     const double energy = terms_.total();
     const double slope = sums_.gradient.dot(step_);
     const double before = residual();
-    step_length_ = 1.0;
+    const ClearPath path = follow(step_, 1.0);
+    step_length_ = path.end();
     for (int halving = 0; halving < 30; ++halving, step_length_ *= 0.5) {
         const double t = step_length_;
-        const Eigen::VectorXd candidate = retraction_(x_, step_, t);
+        const Eigen::VectorXd candidate = path.at(t);
+        cover_contacts(candidate);
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
             const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
@@ -331,8 +366,13 @@ void Newton::relax_spots() {
     constexpr double converging = 0.01;
     const double before = residual();
     evaluate(x_, Order::gradient, trial_);
-    if (trial_.gradient.cwiseAbs().maxCoeff() > converging * before)
-        elimination_(model(), x_, trial_.gradient);
+    if (!(trial_.gradient.cwiseAbs().maxCoeff() > converging * before)) return;
+    const Eigen::VectorXd from = x_;
+    elimination_(model(), x_, trial_.gradient);
+    if (!contact_) return;
+    // It knows of no obstacles but those that are near already.
+    if (!contact_->clear(from, x_)) x_ = from;
+    cover_contacts(x_);
 }
 
 /// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
@@ -353,7 +393,9 @@ bool Newton::leave_saddle() {
     Eigen::VectorXd best;
     for (double length = 4.0; length > 1e-4; length *= 0.5) {
         for (const double sign : {1.0, -1.0}) {
-            const Eigen::VectorXd candidate = retraction_(x_, direction, sign * length);
+            const ClearPath path = follow(direction, sign * length);
+            const Eigen::VectorXd candidate = path.at(path.end());
+            cover_contacts(candidate);
             const double trial = model().energy(candidate);
             if (std::isfinite(trial) && trial < best_energy) {
                 best_energy = trial;
@@ -419,6 +461,8 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
 void Newton::iterate(Equilibrium& result) {
     int escapes = 0;
     bool stalled = false;
+    cover_contacts(x_);
+    const bool impossible = contact_ && passes_through_itself(model(), x_);
     for (;;) {
         const bool exact = loaded_ || rotation_ <= turning;
         const Order order = exact ? Order::hessian : Order::gauss_newton;
@@ -430,6 +474,10 @@ void Newton::iterate(Equilibrium& result) {
         result.residual = residual();
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
             result.message = "the start is not a possible shape: its energy is not finite";
+            break;
+        }
+        if (impossible) {
+            result.message = "the start passes through itself: contact cannot undo that";
             break;
         }
         const bool at_rest = result.residual <= options_.residual_tolerance_n;
