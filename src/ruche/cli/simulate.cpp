@@ -25,6 +25,7 @@ struct SimulateArguments {
     std::string start;
     bool resume = false;
     bool quiet = false;
+    bool verbose = false;
 };
 }  // namespace
 
@@ -105,7 +106,13 @@ static ExitCode run(const SimulateArguments& arguments) {
     watch_for_interrupts();
     ProgressDisplay display;
     Control control{.stop = &interrupted()};
-    if (!arguments.quiet) control.report = [&](const Progress& progress) { display.show(progress); };
+    if (arguments.verbose) {
+        control.report = [](const Progress& progress) {
+            fmt::print(stderr, "{}: {}\n", progress.phase, progress.text);
+        };
+    } else if (!arguments.quiet) {
+        control.report = [&](const Progress& progress) { display.show(progress); };
+    }
     const Result result = simulate(scene, control, start);
     const std::vector<std::string> files = write_result(result, folder, control);
     display.clear();
@@ -127,7 +134,9 @@ void add_simulate(CLI::App& program, Action& action) {
     start->type_name("RESULT");
     verb->add_flag("--resume", arguments->resume, "Go on with the interrupted run in the output folder")
         ->excludes(start);
-    verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+    CLI::Option* quiet = verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");
+    verb->add_flag("--verbose", arguments->verbose, "Log every step, the threads and the dense kernels used")
+        ->excludes(quiet);
     verb->callback([arguments, &action] { action = [arguments] { return run(*arguments); }; });
 }
 

@@ -211,6 +211,13 @@ class TermAssembly {
                 const int r0 = local_start(row);
                 const int c0 = local_start(column);
                 const bool both = i != j && nodes[i] == nodes[j];
+                if (i < T::vertex_slots && !both) {
+                    // Two vertices, by far the most: loops of known length.
+                    for (int c = 0; c < 3; ++c, out += length) {
+                        for (int r = 0; r < 3; ++r) out[r] += h(r0 + r, c0 + c);
+                    }
+                    continue;
+                }
                 for (int c = 0; c < local_size(column); ++c, out += length) {
                     for (int r = 0; r < local_size(row); ++r) {
                         out[r] += h(r0 + r, c0 + c);

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include "ruche/core/parallel.hpp"
 #include "ruche/scene/build.hpp"
 #include "ruche/statics/contact_guard.hpp"
+#include "ruche/statics/sparse_cholesky.hpp"
 
 namespace ruche {
 namespace {
@@ -122,6 +124,8 @@ Equilibrium first_equilibrium(const Scene& scene, const PrintMesh& layout, const
 
 Release release(const Scene& scene, const PrintMesh& layout, Model model, const Control& control,
                 const Eigen::VectorXd* start) {
+    control.say({"release", -1.0,
+                 fmt::format("{} threads, dense kernels for {} (OpenBLAS)", thread_count(), blas_kernels())});
     std::vector<std::string> warnings;
     if (start != nullptr && scene.model.contact && passes_through_itself(model, *start)) {
         start = nullptr;

@@ -76,8 +76,9 @@ class Newton {
         }
     }
 
+    /// Tells how large the system of equations is.
+    void announce() const;
     Equilibrium run(const Eigen::VectorXd& start);
-    void iterate(Equilibrium& result);
     Equilibrium run(const LayoutShape& start) { return run(transfer(start, model(), retraction_)); }
 
   private:
@@ -117,6 +118,7 @@ class Newton {
     static constexpr double first_blend = 0.1;
     static constexpr double blend_factor = 4.0;
 
+    void iterate(Equilibrium& result);
     bool narrow_extension();
     ClearPath follow(const Eigen::VectorXd& direction, double length);
     void cover_contacts(const Eigen::VectorXd& x);
@@ -415,6 +417,13 @@ void Newton::report() const {
                       " mJ, residual " + short_number(residual()) + " N"});
 }
 
+void Newton::announce() const {
+    control_.say({"release", -1.0,
+                  std::to_string(model().input().mesh.triangle_count()) + " triangles, " +
+                      std::to_string(model().size()) + " unknowns, factor of " +
+                      std::to_string(std::lround(cholesky_.factor_megabytes())) + " MB"});
+}
+
 /// Says so when the factor and the matrices that go with it do not fit into memory; else empty.
 std::string Newton::missing_memory() const {
     constexpr double megabyte = 1e6;
@@ -563,7 +572,9 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
                                const Start& start) {
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
-    Equilibrium result = Newton(model, options, control).run(start);
+    Newton newton(model, options, control);
+    newton.announce();
+    Equilibrium result = newton.run(start);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.levels = {{.triangles = model.input().mesh.triangle_count(),
                       .iterations = result.iterations,
