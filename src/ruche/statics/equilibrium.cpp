@@ -408,6 +408,7 @@ bool Newton::leave_saddle() {
     }
     if (best.size() == 0) return false;
     x_ = best;
+    cover_contacts(x_);
     return true;
 }
 

@@ -77,6 +77,16 @@ TEST_CASE("picture: a red mark when not converged or not stable, and none otherw
     CHECK(alarm_pixels(draw_picture(result, small)) > 30);
 }
 
+TEST_CASE("picture: what passes through itself is not shown as fabric or plastic, and there is a red mark") {
+    Result result = sample::rolled_sheet();
+    const int usual = fabric_pixels(draw_picture(result, small), 0, 160);
+    for (int t = 1; t < result.layout.mesh.triangle_count(); ++t)
+        result.self_intersections.push_back({{t - 1, t}, Vec3::Zero()});
+    const Image image = draw_picture(result, small);
+    CHECK(fabric_pixels(image, 0, 160) < usual / 10);
+    CHECK(alarm_pixels(image) > 30);
+}
+
 TEST_CASE("picture: the shape fills its part of the picture whatever its size and place") {
     for (const double size : {1e-3, 1.0, 1e4}) {
         Result result = sample::rolled_sheet();

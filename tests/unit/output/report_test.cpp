@@ -48,6 +48,7 @@ TEST_CASE("report: it has every key that others rely on") {
     CHECK(json["energy_mJ"]["fabric_bending"] == 0.5);
     CHECK(json["energy_mJ"]["plastic"] == 2.0);
     CHECK(json["energy_mJ"]["gravity"] == -0.25);
+    CHECK(json["energy_mJ"]["contact"] == 0.0);
     CHECK(json["residual_N"] == 1e-10);
     CHECK(json["mesh"] == Json({{"vertices", 4}, {"triangles", 2}, {"unknowns", 14}}));
     CHECK(json["solver"]["iterations"] == 9);
@@ -55,6 +56,8 @@ TEST_CASE("report: it has every key that others rely on") {
     CHECK(json["solver"].contains("seconds"));
     for (const char* key : {"max_strain_margin", "min_area_ratio", "max_dihedral_deg", "self_intersections"})
         CHECK(json["health"].contains(key));
+    CHECK(json["health"]["contact_pairs"] == 0);
+    CHECK(json["health"]["smallest_gap_mm"].is_null());
     REQUIRE(json["strips"].size() == 1);
     CHECK(json["strips"][0]["id"] == "strip-1");
     CHECK(json["strips"][0]["stretch"] == doctest::Approx(0.5));

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "output/sample_results.hpp"
@@ -60,4 +61,14 @@ TEST_CASE("surface fields: the given energy density is passed through") {
     std::vector<double> density(result.layout.mesh.triangles.size());
     for (std::size_t t = 0; t < density.size(); ++t) density[t] = 0.1 * static_cast<double>(t);
     CHECK(surface_fields(result, density).energy_density == density);
+}
+
+TEST_CASE("surface fields: triangles that pass through others are marked, and only those") {
+    Result result = sample::rolled_sheet();
+    CHECK(std::ranges::count(surface_fields(result).passes_through, 1) == 0);
+    result.self_intersections = {{{1, 4}, Vec3::Zero()}, {{4, 6}, Vec3::Zero()}};
+    const std::vector<char> marks = surface_fields(result).passes_through;
+    REQUIRE(marks.size() == result.layout.mesh.triangles.size());
+    CHECK(std::ranges::count(marks, 1) == 3);
+    for (const int t : {1, 4, 6}) CHECK(marks[t] == 1);
 }
