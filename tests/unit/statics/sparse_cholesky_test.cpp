@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
 #include <cmath>
 #include <cstring>
@@ -16,7 +17,7 @@ using namespace ruche;
 namespace {
 
 /// A stiffness matrix as shells have them: `side`² vertices on a grid with three unknowns each, random
-/// symmetric blocks between neighbours (diagonals too), diagonally dominant by `dominance`.
+/// symmetric blocks between neighbours (diagonals too), and on the diagonal `dominance` times the sum of a row, plus one.
 Eigen::SparseMatrix<double> grid_matrix(int side, double dominance) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> entry(-1.0, 1.0);
@@ -40,10 +41,15 @@ Eigen::SparseMatrix<double> grid_matrix(int side, double dominance) {
             if (x > 0 && y > 0) add_block(v, v - side - 1);
         }
     }
-    for (int i = 0; i < 3 * side * side; ++i) lower.emplace_back(i, i, dominance * row_sum[i]);
+    for (int i = 0; i < 3 * side * side; ++i) lower.emplace_back(i, i, 1.0 + dominance * row_sum[i]);
     Eigen::SparseMatrix<double> matrix(3 * side * side, 3 * side * side);
     matrix.setFromTriplets(lower.begin(), lower.end());
     return matrix;
+}
+
+Eigen::MatrixXd dense(const Eigen::SparseMatrix<double>& lower) {
+    const Eigen::SparseMatrix<double> full = lower.selfadjointView<Eigen::Lower>();
+    return full;
 }
 
 SymmetricPattern pattern_of(const Eigen::SparseMatrix<double>& a) {
@@ -84,14 +90,14 @@ TEST_CASE("sparse Cholesky: solves as a dense factorisation does, for one and fo
     for (const int side : {1, 2, 5, 17}) {
         CAPTURE(side);
         const Eigen::SparseMatrix<double> a = grid_matrix(side, 0.6);
-        const Eigen::MatrixXd full = Eigen::MatrixXd(a.selfadjointView<Eigen::Lower>());
-        const Eigen::LLT<Eigen::MatrixXd> dense(full);
-        REQUIRE(dense.info() == Eigen::Success);
+        const Eigen::MatrixXd full = dense(a);
+        const Eigen::LLT<Eigen::MatrixXd> factor(full);
+        REQUIRE(factor.info() == Eigen::Success);
         SparseCholesky sparse = analysed(a);
         REQUIRE(sparse.factorize(values_of(a)));
         for (const int count : {1, 3, 1}) {
             const Eigen::MatrixXd b = right_hand_sides(a.rows(), count);
-            const Eigen::MatrixXd expected = dense.solve(b);
+            const Eigen::MatrixXd expected = factor.solve(b);
             const Eigen::MatrixXd found = sparse.solve(b);
             CHECK((found - expected).norm() < 1e-11 * expected.norm());
         }
@@ -100,7 +106,7 @@ TEST_CASE("sparse Cholesky: solves as a dense factorisation does, for one and fo
 
 TEST_CASE("sparse Cholesky: a matrix is accepted exactly when its smallest eigenvalue is positive") {
     const Eigen::SparseMatrix<double> a = grid_matrix(9, 0.3);
-    const Eigen::MatrixXd full = Eigen::MatrixXd(a.selfadjointView<Eigen::Lower>());
+    const Eigen::MatrixXd full = dense(a);
     const double lowest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full).eigenvalues()[0];
     const double size = full.norm();
     SparseCholesky sparse = analysed(a);
