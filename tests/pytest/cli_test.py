@@ -42,7 +42,7 @@ def report(place):
 
 def test_version_and_help(tmp_path):
     assert re.fullmatch(r"ruche \d+\.\d+\.\d+\n", ruche("--version", cwd=tmp_path).stdout)
-    for verb in [], ["simulate"], ["check"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"]:
+    for verb in [], ["simulate"], ["check"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"], ["bench"]:
         run = ruche(*verb, "--help", cwd=tmp_path)
         assert run.returncode == 0 and run.stderr == ""
         assert len(run.stdout) > 100
@@ -276,3 +276,29 @@ def test_umlauts_spaces_and_a_german_locale_change_nothing(finished, german, tmp
     again = ruche("simulate", str(other / "scene.toml"), "-o", "Lösung 2", cwd=tmp_path, env=german)
     assert again.returncode == 0, again.stderr
     assert numbers(tmp_path / "Lösung 2")["energy_mJ"] == numbers(plain)["energy_mJ"]
+
+
+def test_bench_measures_a_release_without_any_file(tmp_path):
+    run = ruche("bench", "--scene", "svg", "--triangles", "6000", "--threads", "1", "--json", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout)
+    assert found["scene"] == "svg" and found["threads"] == 1
+    assert abs(found["triangles"] / 6000 - 1) < 0.1
+    assert found["unknowns"] > found["triangles"] * 1.5
+    times = [found[key] for key in ("value_s", "gradient_s", "hessian_s", "factorization_s", "solve_s")]
+    assert all(time > 0 for time in times) and times[:3] == sorted(times[:3])
+    assert found["converged"] and found["stable"]
+    assert found["levels"][-1]["factorizations"] == found["factorizations"] > 0
+    # Parts of a release are not longer than the whole, and that is not mostly something else.
+    assert 1 < found["equivalent_factorizations"] < 500
+    assert abs(found["equivalent_factorizations"] * found["factorization_s"] / found["release_cpu_s"] - 1) < 1e-9
+    assert found["peak_mb"] > found["factor_mb"] > 1
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_bench_says_what_cannot_be_measured(tmp_path):
+    wrong = ruche("bench", "--scene", "tours", cwd=tmp_path)
+    assert wrong.returncode == 2 and "did you mean torus" in wrong.stderr
+    small = ruche("bench", "--scene", "torus", "--triangles", "100", cwd=tmp_path)
+    assert small.returncode == 2 and re.search(r"--triangles: .* 100 triangles\n  The nearest mesh has \d+", small.stderr)
+    assert ruche("bench", "--triangles", "-5", cwd=tmp_path).returncode == 2

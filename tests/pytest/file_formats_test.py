@@ -137,3 +137,10 @@ def test_the_table_of_fields_has_those_of_the_files(result):
     assert table == fields
     read = first_column(section("Layout mesh"))
     assert {"front_mm", "back_mm", "front_modulus_mpa", "back_modulus_mpa", "strip"} <= read & table
+
+
+def test_the_table_of_the_benchmark_has_its_keys(tmp_path):
+    found = json.loads(ruche("bench", "--triangles", "3000", "--json", cwd=tmp_path))
+    assert first_column(section("Benchmark")) == set(found)
+    pieces = {"value_s", "gradient_s", "hessian_s", "factorization_s", "solve_s"}
+    assert set(found["with_all_threads"]) == pieces <= set(found)

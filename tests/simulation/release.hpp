@@ -21,7 +21,7 @@ inline PrintMesh printed(TriangleMesh mesh, const std::function<double(const Vec
             3.0;
         const double h = thickness(centre);
         layout.print.push_back({.front = std::max(0.0, h), .back = std::max(0.0, -h)});
-        layout.strip.push_back(h == 0.0 ? -1 : 0);
+        layout.strip.push_back({.front = h > 0.0 ? 0 : -1, .back = h < 0.0 ? 0 : -1});
     }
     return layout;
 }

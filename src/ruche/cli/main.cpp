@@ -55,6 +55,7 @@ int run(int count, char** arguments) {
     ruche::add_simulate(program, action);
     ruche::add_check(program, action);
     ruche::add_pattern(program, action);
+    ruche::add_bench(program, action);
     ruche::add_cards(program, action);
     ruche::add_template(program, action);
     check_verbs(&program, count, arguments);

@@ -97,14 +97,23 @@ FieldInfo info(const Field<Struct>& field) {
     return result;
 }
 
+/// Whether a struct can have a member of a type at all. In none smaller than the type: saying so spares `get`
+/// and `set` the impossible cases, in which the compiler sees reads and writes beyond the struct.
+template <class Struct, class Value>
+constexpr bool can_have(Value Struct::*) {
+    return sizeof(Value) <= sizeof(Struct);
+}
+
 template <class Struct>
 FieldValue get(const Struct& s, const Field<Struct>& field) {
     return std::visit(
         [&](const auto& member) -> FieldValue {
             if constexpr (std::is_same_v<std::decay_t<decltype(member)>, Choice<Struct>>)
                 return std::string(member.names[static_cast<std::size_t>(member.get(s))]);
-            else
+            else if constexpr (can_have(std::decay_t<decltype(member)>{}))
                 return s.*member;
+            else
+                return {};
         },
         field.member);
 }
@@ -118,7 +127,7 @@ void set(Struct& s, const Field<Struct>& field, const FieldValue& value) {
                 const auto& name = std::get<std::string>(value);
                 for (int i = 0; i < static_cast<int>(member.names.size()); ++i)
                     if (member.names[static_cast<std::size_t>(i)] == name) member.set(s, i);
-            } else {
+            } else if constexpr (can_have(std::decay_t<decltype(member)>{})) {
                 s.*member = std::get<std::decay_t<decltype(s.*member)>>(value);
             }
         },

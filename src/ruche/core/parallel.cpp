@@ -99,20 +99,23 @@ class Pool {
 };
 
 std::mutex pool_mutex;
-int wanted_threads = 0;
+std::atomic<int> wanted_threads = 0;
 
 int machine_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
 Pool& pool() {
     static std::unique_ptr<Pool> instance;
-    const int wanted = wanted_threads > 0 ? wanted_threads : machine_threads();
+    const int wanted = thread_count();
     if (!instance || instance->size() != wanted) instance = std::make_unique<Pool>(wanted - 1);
     return *instance;
 }
 
 }  // namespace
 
-int thread_count() { return wanted_threads > 0 ? wanted_threads : machine_threads(); }
+int thread_count() {
+    const int wanted = wanted_threads;
+    return wanted > 0 ? wanted : machine_threads();
+}
 
 void set_thread_count(int count) {
     const std::scoped_lock lock(pool_mutex);

@@ -155,36 +155,27 @@ std::vector<std::vector<int>> regions_of_pieces(const Triangulation& triangulati
     return regions;
 }
 
-/// The strips on a triangle, -1 = none.
-struct Cover {
-    int front = -1;
-    int back = -1;
-};
-
-Cover cover_of(const std::vector<int>& regions, const std::vector<Strip>& strips) {
-    Cover cover;
+StripPair strips_over(const std::vector<int>& regions, const std::vector<Strip>& strips) {
+    StripPair pair;
     for (const int r : regions) {
         if (r == 0) continue;
-        int& best = strips[r - 1].side == Side::front ? cover.front : cover.back;
+        int& best = pair.on(strips[r - 1].side);
         if (best < 0 || strips[r - 1].thickness > strips[best].thickness) best = r - 1;
     }
-    return cover;
+    return pair;
 }
 
-void set_print(PrintMesh& result, const std::vector<Cover>& covers, const std::vector<Strip>& strips) {
-    for (const Cover& cover : covers) {
-        Print print;
-        if (cover.front >= 0) {
-            print.front = strips[cover.front].thickness;
-            print.front_modulus = strips[cover.front].youngs_modulus;
-        }
-        if (cover.back >= 0) {
-            print.back = strips[cover.back].thickness;
-            print.back_modulus = strips[cover.back].youngs_modulus;
-        }
-        result.print.push_back(print);
-        result.strip.push_back(print.back > print.front ? cover.back : cover.front);
+Print print_of(const StripPair& pair, const std::vector<Strip>& strips) {
+    Print print;
+    if (pair.front >= 0) {
+        print.front = strips[pair.front].thickness;
+        print.front_modulus = strips[pair.front].youngs_modulus;
     }
+    if (pair.back >= 0) {
+        print.back = strips[pair.back].thickness;
+        print.back_modulus = strips[pair.back].youngs_modulus;
+    }
+    return print;
 }
 
 // A sheet must not hang together at a single point: nothing could be said about how it bends there.
@@ -226,15 +217,13 @@ std::vector<Polyline> centre_lines(const Strip& strip) {
 }
 
 std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions& options,
-                                       const TriangleMesh& mesh, const std::vector<Cover>& covers) {
-    const PointLocator locator(mesh);
+                                       const PrintMesh& layout) {
+    const PointLocator locator(layout.mesh);
     std::vector<MeshedStrip> result;
     for (int s = 0; s < static_cast<int>(pattern.strips.size()); ++s) {
         const Strip& strip = pattern.strips[s];
         MeshedStrip meshed{strip.id, strip.side, strip.thickness, {}};
-        const auto own = [&](int t) {
-            return (strip.side == Side::front ? covers[t].front : covers[t].back) == s;
-        };
+        const auto own = [&](int t) { return layout.strip[t].on(strip.side) == s; };
         double size = options.size_mm;
         for (const Polygon& polygon : strip.region)
             size = std::min(size, size_on(polygon, strip.thickness, options));
@@ -272,11 +261,11 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     PrintMesh result;
     result.mesh = reordered(triangulation.mesh, order);
     check_manifold(result.mesh);
-    std::vector<Cover> covers;
-    covers.reserve(order.size());
-    for (const int t : order) covers.push_back(cover_of(covered[triangulation.piece[t]], pattern.strips));
-    set_print(result, covers, pattern.strips);
-    result.strips = meshed_strips(pattern, options, result.mesh, covers);
+    for (const int t : order) {
+        result.strip.push_back(strips_over(covered[triangulation.piece[t]], pattern.strips));
+        result.print.push_back(print_of(result.strip.back(), pattern.strips));
+    }
+    result.strips = meshed_strips(pattern, options, result);
     result.outline_layer = pattern.outline_layer;
     result.warnings = pattern.warnings;
     warn_about_size(result, expected);

@@ -11,42 +11,70 @@
 namespace ruche {
 namespace {
 
+constexpr Side sides[] = {Side::front, Side::back};
+
+/// What is printed on one side: thickness and modulus.
+std::pair<double, double> print_on(const Print& print, Side side) {
+    return side == Side::front ? std::pair(print.front, print.front_modulus)
+                               : std::pair(print.back, print.back_modulus);
+}
+
 /// Numbers the strips; -1 on bare fabric. Returns the number that the file gave to each, -1 for none.
-std::vector<int> number_strips(PrintMesh& layout, const MeshEdges& edges, const std::vector<int>& given) {
+std::vector<int> number_strips(PrintMesh& layout, const MeshEdges& edges,
+                               const std::vector<StripPair>& given) {
     const int count = layout.mesh.triangle_count();
-    const auto given_to = [&](int t) {
-        return given.empty() || layout.print[t].bare() ? -1 : given[static_cast<std::size_t>(t)];
+    const auto printed = [&](int t, Side side) { return print_on(layout.print[t], side).first > 0.0; };
+    const auto given_to = [&](int t, Side side) {
+        return given.empty() || !printed(t, side) ? -1 : given[static_cast<std::size_t>(t)].on(side);
     };
     std::map<int, int> by_given;
-    for (int t = 0; t < count; ++t)
-        if (given_to(t) >= 0) by_given[given_to(t)] = 0;
+    for (int t = 0; t < count; ++t) {
+        for (const Side side : sides)
+            if (given_to(t, side) >= 0) by_given[given_to(t, side)] = 0;
+    }
     std::vector<int> own;
     for (auto& [number, strip] : by_given) {
         strip = static_cast<int>(own.size());
         own.push_back(number);
     }
-    layout.strip.assign(count, -1);
+    layout.strip.assign(count, {});
+    for (int t = 0; t < count; ++t) {
+        for (const Side side : sides)
+            if (given_to(t, side) >= 0) layout.strip[t].on(side) = by_given[given_to(t, side)];
+    }
+    const auto open_to_number = [&](int t, Side side) {
+        return printed(t, side) && layout.strip[t].on(side) < 0;
+    };
     std::vector<int> open;
-    for (int seed = 0; seed < count; ++seed) {
-        if (given_to(seed) >= 0) layout.strip[seed] = by_given[given_to(seed)];
-        if (layout.strip[seed] >= 0 || layout.print[seed].bare()) continue;
-        layout.strip[seed] = static_cast<int>(own.size());
+    const auto spread = [&](int seed, Side side) {
+        layout.strip[seed].on(side) = static_cast<int>(own.size());
         open.push_back(seed);
         while (!open.empty()) {
             const int t = open.back();
             open.pop_back();
             for (const int e : edges.of_triangle[t]) {
                 for (const int u : edges.edges[e].triangle) {
-                    if (u < 0 || layout.strip[u] >= 0 || given_to(u) >= 0) continue;
-                    if (!(layout.print[u] == layout.print[seed])) continue;
-                    layout.strip[u] = static_cast<int>(own.size());
+                    if (u < 0 || !open_to_number(u, side)) continue;
+                    if (print_on(layout.print[u], side) != print_on(layout.print[seed], side)) continue;
+                    layout.strip[u].on(side) = static_cast<int>(own.size());
                     open.push_back(u);
                 }
             }
         }
         own.push_back(-1);
+    };
+    for (int seed = 0; seed < count; ++seed) {
+        for (const Side side : sides)
+            if (open_to_number(seed, side)) spread(seed, side);
     }
     return own;
+}
+
+/// Calls `use(strip)` for each strip on a pair of sides, once.
+template <class Use>
+void for_each_strip(const StripPair& pair, Use&& use) {
+    if (pair.front >= 0) use(pair.front);
+    if (pair.back >= 0 && pair.back != pair.front) use(pair.back);
 }
 
 /// The borders of every component as closed chains of points, the printed side on their left.
@@ -56,9 +84,11 @@ std::vector<std::vector<Polyline>> border_loops(const PrintMesh& layout, const M
     for (const Edge& edge : edges.edges) {
         for (int k = 0; k < 2; ++k) {
             if (edge.triangle[k] < 0) continue;
-            const int own = layout.strip[edge.triangle[k]];
-            const int other = edge.triangle[1 - k] < 0 ? -1 : layout.strip[edge.triangle[1 - k]];
-            if (own >= 0 && own != other) next[own].emplace(edge.vertex[k], edge.vertex[1 - k]);
+            const int beyond = edge.triangle[1 - k];
+            const StripPair other = beyond < 0 ? StripPair{} : layout.strip[beyond];
+            for_each_strip(layout.strip[edge.triangle[k]], [&](int own) {
+                if (!other.has(own)) next[own].emplace(edge.vertex[k], edge.vertex[1 - k]);
+            });
         }
     }
     std::vector<std::vector<Polyline>> loops(components);
@@ -83,10 +113,12 @@ std::vector<double> element_sizes(const PrintMesh& layout, const MeshEdges& edge
     std::vector<double> sum(components, 0.0);
     std::vector<int> count(components, 0);
     for (const Edge& edge : edges.edges) {
-        const int c = layout.strip[edge.triangle[0]];
-        if (c < 0) continue;
-        sum[c] += (layout.mesh.vertices[edge.vertex[0]] - layout.mesh.vertices[edge.vertex[1]]).norm();
-        ++count[c];
+        const double length =
+            (layout.mesh.vertices[edge.vertex[0]] - layout.mesh.vertices[edge.vertex[1]]).norm();
+        for_each_strip(layout.strip[edge.triangle[0]], [&](int c) {
+            sum[c] += length;
+            ++count[c];
+        });
     }
     for (int c = 0; c < components; ++c) sum[c] /= std::max(count[c], 1);
     return sum;
@@ -94,7 +126,15 @@ std::vector<double> element_sizes(const PrintMesh& layout, const MeshEdges& edge
 
 }  // namespace
 
-void find_strips(PrintMesh& layout, const std::vector<int>& number, const std::map<int, std::string>& names) {
+int main_strip(const PrintMesh& layout, int triangle) {
+    const StripPair& pair = layout.strip[triangle];
+    if (pair.front < 0 || pair.back < 0) return std::max(pair.front, pair.back);
+    const Print& print = layout.print[triangle];
+    return print.back > print.front ? pair.back : pair.front;
+}
+
+void find_strips(PrintMesh& layout, const std::vector<StripPair>& number,
+                 const std::map<int, std::string>& names) {
     const MeshEdges edges = find_edges(layout.mesh);
     const std::vector<int> given = number_strips(layout, edges, number);
     const int count = static_cast<int>(given.size());
@@ -102,11 +142,15 @@ void find_strips(PrintMesh& layout, const std::vector<int>& number, const std::m
     const std::vector<double> sizes = element_sizes(layout, edges, count);
     layout.strips.assign(count, {});
     for (int t = layout.mesh.triangle_count() - 1; t >= 0; --t) {
-        if (layout.strip[t] < 0) continue;
-        MeshedStrip& strip = layout.strips[layout.strip[t]];
         const Print& print = layout.print[t];
-        strip.side = print.front >= print.back ? Side::front : Side::back;
-        strip.thickness = std::max(print.front, print.back);
+        const StripPair& pair = layout.strip[t];
+        for_each_strip(pair, [&](int c) {
+            const bool both = pair.front == c && pair.back == c;
+            const bool back = both ? print.back > print.front : pair.back == c;
+            const Side side = back ? Side::back : Side::front;
+            layout.strips[c].side = side;
+            layout.strips[c].thickness = print_on(print, side).first;
+        });
     }
     const PointLocator locator(layout.mesh);
     for (int c = 0; c < count; ++c) {
@@ -118,7 +162,7 @@ void find_strips(PrintMesh& layout, const std::vector<int>& number, const std::m
             if (!(steps >= 1.0 && steps < 1e7)) continue;
             std::vector<MeshPoint> points;
             for (const Vec2& x : resample(line, false, static_cast<int>(steps) + 1)) {
-                const auto at = locator.find(x, sizes[c], [&](int t) { return layout.strip[t] == c; });
+                const auto at = locator.find(x, sizes[c], [&](int t) { return layout.strip[t].has(c); });
                 if (at) points.push_back(*at);
             }
             if (points.size() >= 2) strip.centreline.push_back(std::move(points));

@@ -237,7 +237,9 @@ double* vertex_target(Vec3& vertex, const std::string& name) {
 struct Face {
     Print print;
     double thickness = 0.0;
-    double strip = -1.0;
+    double strip = -1.0;  // on whichever side is printed
+    double front_strip = -1.0;
+    double back_strip = -1.0;
     bool has_corners = false;
     Triangle corners = {};
 };
@@ -247,6 +249,8 @@ double* face_target(Face& face, const std::string& name) {
     if (name == "back_mm") return &face.print.back;
     if (name == "thickness_mm") return &face.thickness;
     if (name == "strip") return &face.strip;
+    if (name == "front_strip") return &face.front_strip;
+    if (name == "back_strip") return &face.back_strip;
     if (name == "front_modulus_mpa") return &face.print.front_modulus;
     if (name == "back_modulus_mpa") return &face.print.back_modulus;
     return nullptr;
@@ -266,14 +270,18 @@ void read_list(Body& body, const Property& property, Face* face) {
     if (corners) face->has_corners = true;
 }
 
+bool has_property(const Header& header, std::string_view element, std::string_view property) {
+    for (const Element& e : header.elements) {
+        for (const Property& p : e.properties) {
+            if (e.name == element && p.name == property) return true;
+        }
+    }
+    return false;
+}
+
 void check_properties(const Header& header, const std::string& file) {
     const auto has = [&](const char* element, const char* property) {
-        for (const Element& e : header.elements) {
-            for (const Property& p : e.properties) {
-                if (e.name == element && p.name == property) return true;
-            }
-        }
-        return false;
+        return has_property(header, element, property);
     };
     const auto fail = [&](const char* problem) { throw InputError({.file = file}, problem, advice); };
     if (!has("vertex", "x") || !has("vertex", "y")) fail("the vertices have no x and y");
@@ -294,6 +302,8 @@ RawMesh read_ply(const std::string& path) {
     Body body(scan, header.format, path);
     RawMesh mesh;
     mesh.strip_names = header.strip_names;
+    const bool strip_per_side =
+        has_property(header, "face", "front_strip") || has_property(header, "face", "back_strip");
     for (const Element& element : header.elements) {
         const bool vertices = element.name == "vertex";
         const bool faces = element.name == "face";
@@ -320,7 +330,8 @@ RawMesh read_ply(const std::string& path) {
                 face.print.front = face.thickness;
             mesh.triangles.push_back(face.corners);
             mesh.print.push_back(face.print);
-            mesh.strip.push_back(index_of(face.strip));
+            mesh.strip.push_back({index_of(strip_per_side ? face.front_strip : face.strip),
+                                  index_of(strip_per_side ? face.back_strip : face.strip)});
         }
     }
     return mesh;

@@ -21,6 +21,17 @@ struct Print {
     bool operator==(const Print&) const = default;
 };
 
+/// The strips on the two sides of a triangle: indices into PrintMesh::strips, -1 where there is none.
+struct StripPair {
+    int front = -1;
+    int back = -1;
+
+    int& on(Side side) { return side == Side::front ? front : back; }
+    int on(Side side) const { return side == Side::front ? front : back; }
+    bool has(int strip) const { return front == strip || back == strip; }
+    bool operator==(const StripPair&) const = default;
+};
+
 /// A point of the layout on the mesh: a triangle and barycentric coordinates.
 struct MeshPoint {
     int triangle = -1;
@@ -38,13 +49,16 @@ struct MeshedStrip {
 /// The conforming mesh of a pattern: every border of a strip is made of edges.
 struct PrintMesh {
     TriangleMesh mesh;
-    std::vector<Print> print;  ///< per triangle
-    std::vector<int>
-        strip;  ///< per triangle: index into `strips` of the strip on it (the thickest), -1 = bare
+    std::vector<Print> print;      ///< per triangle
+    std::vector<StripPair> strip;  ///< per triangle; of several on one side the thickest
     std::vector<MeshedStrip> strips;
     std::string outline_layer;  ///< as in Pattern
     std::vector<std::string> warnings;
 };
+
+/// The one strip that stands for a triangle where only one can: that of the thicker print, the front's when
+/// both are equal; -1 on bare fabric.
+int main_strip(const PrintMesh& layout, int triangle);
 
 struct MeshOptions {
     double size_mm = 1.0;          ///< edge length of plastic elements

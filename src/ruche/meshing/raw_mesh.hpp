@@ -14,14 +14,15 @@ struct RawMesh {
     std::vector<Vec3> vertices;
     std::vector<Triangle> triangles;  ///< indices as written: they may point anywhere
     std::vector<Print> print;         ///< per triangle
-    std::vector<int> strip;           ///< per triangle: number of its strip, -1 where it has none; or empty
+    std::vector<StripPair> strip;     ///< per triangle: numbers of its strips, -1 where it has none; or empty
     std::map<int, std::string> strip_names;
 };
 
 /// PLY, text or binary of either byte order: vertices x, y and z if any; triangles with the face properties
 /// `front_mm` and `back_mm` (either may be missing) or `thickness_mm` (negative: on the back), and optional
-/// `front_modulus_mpa`, `back_modulus_mpa` and `strip`, whose names stand in comments ("comment strip 0
-/// arm"). Everything else in the file is skipped. Throws InputError.
+/// `front_modulus_mpa`, `back_modulus_mpa` and `front_strip`, `back_strip` or `strip` (on either side), whose
+/// names stand in comments ("comment strip 0 arm"). Everything else in the file is skipped. Throws
+/// InputError.
 RawMesh read_ply(const std::string& path);
 
 /// OBJ with the thickness of its triangles from a CSV table: triangle (in the file's order, from 0),

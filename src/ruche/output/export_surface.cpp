@@ -50,6 +50,10 @@ std::vector<DataColumn> face_columns(const SurfaceFields& fields) {
     data.push_back(
         column("side", Kind::int32, fields.side, [](PrintedSide side) { return static_cast<int>(side); }));
     data.push_back(column("strip", Kind::int32, fields.strip, [](int strip) { return strip; }));
+    data.push_back(
+        column("front_strip", Kind::int32, fields.strips, [](const StripPair& pair) { return pair.front; }));
+    data.push_back(
+        column("back_strip", Kind::int32, fields.strips, [](const StripPair& pair) { return pair.back; }));
     add_curvature(data, fields.face_curvature);
     data.push_back(column("stretch_max", Kind::float32, fields.stretch_max, same));
     data.push_back(column("stretch_min", Kind::float32, fields.stretch_min, same));

@@ -123,7 +123,7 @@ Json places_of(const Result& result) {
             Vec2 centre = Vec2::Zero();
             for (const int v : tri) centre += result.layout.mesh.vertices[static_cast<std::size_t>(v)] / 3.0;
             layout.push_back({centre.x(), centre.y()});
-            const int strip = result.layout.strip[static_cast<std::size_t>(t)];
+            const int strip = main_strip(result.layout, t);
             strips.push_back(strip < 0 ? Json()
                                        : Json(result.layout.strips[static_cast<std::size_t>(strip)].id));
         }

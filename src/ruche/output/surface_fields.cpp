@@ -65,7 +65,9 @@ SurfaceFields surface_fields(const Result& result, std::span<const double> energ
             fields.back_modulus_mpa.push_back(print.back_modulus);
         }
         fields.side.push_back(printed_side(print));
-        fields.strip.push_back(result.layout.strip.empty() ? -1 : result.layout.strip[t]);
+        const bool numbered = !result.layout.strip.empty();
+        fields.strip.push_back(numbered ? main_strip(result.layout, t) : -1);
+        fields.strips.push_back(numbered ? result.layout.strip[t] : StripPair{});
         fields.face_normal.push_back(unit_normal(mesh.triangles[t], result.shape));
         VertexCurvature curvature;
         for (const int v : mesh.triangles[t]) {

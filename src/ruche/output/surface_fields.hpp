@@ -23,7 +23,8 @@ struct SurfaceFields {
     std::vector<double> front_modulus_mpa;  ///< 0 = the card's; both empty when it is that everywhere
     std::vector<double> back_modulus_mpa;
     std::vector<PrintedSide> side;
-    std::vector<int> strip;                       ///< index into layout.strips, -1 = bare fabric
+    std::vector<int> strip;                       ///< main_strip: index into layout.strips, -1 = bare fabric
+    std::vector<StripPair> strips;                ///< those of both sides
     std::vector<Vec3> face_normal;                ///< unit; zero for a triangle without area
     std::vector<VertexCurvature> face_curvature;  ///< mean of the three vertices, 1/mm
     std::vector<double> stretch_max;              ///< principal stretches: released over printed length

@@ -1,5 +1,7 @@
 #include "ruche/pattern/css_sheet.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <optional>
 #include <tuple>
@@ -116,7 +118,8 @@ bool has_class(const pugi::xml_node& element, std::string_view name) {
 
 std::string clipped(std::string_view text) {
     text = trimmed(text);
-    return text.size() <= 60 ? std::string(text) : std::string(text.substr(0, 57)) + "...";
+    constexpr std::size_t most = 60;
+    return text.size() <= most ? std::string(text) : fmt::format("{}...", text.substr(0, most - 3));
 }
 
 }  // namespace

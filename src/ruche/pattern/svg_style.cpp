@@ -1,5 +1,7 @@
 #include "ruche/pattern/svg_style.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -120,7 +122,8 @@ class Setter {
         }
         std::optional<Value> value = parse(std::string_view(entry->second));
         if (!value) {
-            complain_(std::string(name) + ": '" + entry->second.substr(0, 60) + "' cannot be read: ignored");
+            const std::string_view start = std::string_view(entry->second).substr(0, 60);
+            complain_(fmt::format("{}: '{}' cannot be read: ignored", name, start));
             return false;
         }
         member = std::move(*value);

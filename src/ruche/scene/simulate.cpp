@@ -28,7 +28,7 @@ class Stopwatch {
 
 /// "strip 'a'", or "bare fabric".
 std::string carrier(const PrintMesh& layout, int triangle) {
-    const int strip = layout.strip[static_cast<std::size_t>(triangle)];
+    const int strip = main_strip(layout, triangle);
     return strip < 0 ? "bare fabric" : "strip '" + layout.strips[static_cast<std::size_t>(strip)].id + "'";
 }
 

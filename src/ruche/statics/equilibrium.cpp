@@ -201,17 +201,7 @@ void Newton::build_matrix(Order order, double shift) {
     matrix_ = sums_.hessian;
     const auto resisting = order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
                                                    : RigidMotions::Resisting::supports;
-    for (const GaugeDirection& gauge : rigid_.gauge(x_, resisting)) {
-        const int at = pattern.block_offset(gauge.vertex, gauge.vertex);
-        const int length = pattern.column_length(gauge.vertex);
-        const double stiffness =
-            (matrix_[at] + matrix_[at + length + 1] + matrix_[at + 2 * length + 2]) / 3.0;
-        for (int c = 0; c < 3; ++c) {
-            for (int r = 0; r < 3; ++r) {
-                matrix_[at + c * length + r] += stiffness * gauge.direction[r] * gauge.direction[c];
-            }
-        }
-    }
+    rigid_.hold(pattern, x_, resisting, matrix_);
     const std::vector<int>& start = pattern.column_start();
     const std::vector<int>& row = pattern.row_index();
     const bool supported = !model().input().supports.empty();

@@ -121,4 +121,18 @@ std::vector<GaugeDirection> RigidMotions::gauge(const Eigen::VectorXd& x, Resist
     return result;
 }
 
+void RigidMotions::hold(const NodePattern& pattern, const Eigen::VectorXd& x, Resisting resisting,
+                        std::vector<double>& hessian) const {
+    for (const GaugeDirection& gauge : gauge(x, resisting)) {
+        const int at = pattern.block_offset(gauge.vertex, gauge.vertex);
+        const int length = pattern.column_length(gauge.vertex);
+        const double stiffness =
+            (hessian[at] + hessian[at + length + 1] + hessian[at + 2 * length + 2]) / 3.0;
+        for (int c = 0; c < 3; ++c) {
+            for (int r = 0; r < 3; ++r)
+                hessian[at + c * length + r] += stiffness * gauge.direction[r] * gauge.direction[c];
+        }
+    }
+}
+
 }  // namespace ruche

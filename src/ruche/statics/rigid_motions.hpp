@@ -32,6 +32,11 @@ class RigidMotions {
     /// For the shape x; the vertices that carry them are far apart in it.
     std::vector<GaugeDirection> gauge(const Eigen::VectorXd& x, Resisting resisting) const;
 
+    /// Adds stiffness along these directions, as much as the vertex has by itself, to the values of a Hessian
+    /// at x, which lie on `pattern`.
+    void hold(const NodePattern& pattern, const Eigen::VectorXd& x, Resisting resisting,
+              std::vector<double>& hessian) const;
+
   private:
     struct Piece {
         std::vector<int> vertices;

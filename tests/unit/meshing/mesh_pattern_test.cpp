@@ -38,13 +38,14 @@ double area_where(const PrintMesh& mesh, const std::function<bool(int)>& counts)
     return sum;
 }
 
-/// Counter-clockwise, conforming, vertex-manifold, nothing unused, one print and one strip per triangle.
+/// Counter-clockwise, conforming, vertex-manifold, nothing unused, a strip on each side that is printed.
 bool is_sound(const PrintMesh& mesh) {
     const TriangleMesh& m = mesh.mesh;
     if (mesh.print.size() != m.triangles.size() || mesh.strip.size() != m.triangles.size()) return false;
     for (int t = 0; t < m.triangle_count(); ++t) {
         if (!(layout_area(m, t) > 0.0)) return false;
-        if ((mesh.strip[t] < 0) != mesh.print[t].bare()) return false;
+        if ((mesh.strip[t].front < 0) != (mesh.print[t].front == 0.0)) return false;
+        if ((mesh.strip[t].back < 0) != (mesh.print[t].back == 0.0)) return false;
     }
     std::vector<int> border(m.vertices.size(), 0);
     std::vector<int> uses(m.vertices.size(), 0);
@@ -168,7 +169,7 @@ TEST_CASE("mesh: a strip thinner than an element keeps exactly its area") {
     CHECK(smallest_angle_deg(mesh.mesh) > 20.0);
 }
 
-TEST_CASE("mesh: front over back carries both prints, the thicker names the strip") {
+TEST_CASE("mesh: front over back carries both prints and both strips, the thicker one stands for them") {
     Pattern drawn;
     drawn.strips = {strip("front", {Vec2(0, 0), Vec2(20, 0)}, 2.0, 0.6, Side::front),
                     strip("back", {Vec2(10, -10), Vec2(10, 10)}, 3.0, 0.9, Side::back)};
@@ -179,8 +180,14 @@ TEST_CASE("mesh: front over back carries both prints, the thicker names the stri
     check_areas(pattern, mesh);
     const double both = area_where(mesh, [&](int t) { return mesh.print[t] == Print{0.6, 0.9, 50.0, 0.0}; });
     CHECK(both == doctest::Approx(6.0).epsilon(1e-9));
-    CHECK(area_where(mesh, [&](int t) { return mesh.strip[t] == 1; }) == doctest::Approx(60.0).epsilon(1e-9));
-    CHECK(area_where(mesh, [&](int t) { return mesh.strip[t] == 0; }) == doctest::Approx(34.0).epsilon(1e-9));
+    const auto check_area = [&](double expected, const std::function<bool(int)>& counts) {
+        CHECK(area_where(mesh, counts) == doctest::Approx(expected).epsilon(1e-9));
+    };
+    check_area(40.0, [&](int t) { return mesh.strip[t].front == 0; });
+    check_area(60.0, [&](int t) { return mesh.strip[t].back == 1; });
+    check_area(6.0, [&](int t) { return mesh.strip[t] == StripPair{0, 1}; });
+    check_area(34.0, [&](int t) { return main_strip(mesh, t) == 0; });
+    check_area(60.0, [&](int t) { return main_strip(mesh, t) == 1; });
     // The thinner strip's centre line runs through under the other side's strip.
     REQUIRE(mesh.strips[0].centreline.size() == 1);
     CHECK(mesh.strips[0].centreline[0].size() == 41);
@@ -199,7 +206,7 @@ TEST_CASE("mesh: centre lines are evenly spaced points on the strip's own triang
             const double step = (position(mesh.mesh, line[1]) - position(mesh.mesh, line[0])).norm();
             CHECK(step <= 0.5);
             for (std::size_t i = 0; i < line.size(); ++i) {
-                CHECK(mesh.strip[line[i].triangle] == s);
+                CHECK(mesh.strip[line[i].triangle] == StripPair{.front = s});
                 if (i == 0) continue;
                 const Vec2 along = position(mesh.mesh, line[i]) - position(mesh.mesh, line[i - 1]);
                 CHECK(along.norm() == doctest::Approx(step).epsilon(1e-6));

@@ -89,7 +89,7 @@ TEST_CASE("mesh input: an ASCII PLY gives the mesh, the print and the strips") {
     CHECK(m.mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
     CHECK(m.print == std::vector<Print>{{.front = 0.6}, {.back = 0.4}});
     REQUIRE(m.strips.size() == 2);
-    CHECK(m.strip == std::vector<int>{0, 1});
+    CHECK(m.strip == std::vector<StripPair>{{.front = 0}, {.back = 1}});
     CHECK(m.strips[0].side == Side::front);
     CHECK(m.strips[1].side == Side::back);
     CHECK(m.strips[1].thickness == 0.4);
@@ -145,6 +145,26 @@ TEST_CASE("mesh input: binary PLY of both byte orders equals the text") {
     }
 }
 
+TEST_CASE("mesh input: a strip has one number for both sides, or one for each") {
+    const Folder folder;
+    const std::string faces = "3 0 1 2 0.6 0.4 7 3\n3 0 2 3 0.6 0 7 3\n";
+    const auto strips = [&](const std::string& first, const std::string& second) {
+        const std::string properties =
+            both_sides + "property int " + first + "\nproperty int " + second + "\n";
+        return read_print_mesh(folder.write("m.ply", ply(properties, faces)));
+    };
+    const PrintMesh one = strips("strip", "other");
+    CHECK(one.strip == std::vector<StripPair>{{0, 0}, {.front = 0}});
+    CHECK(one.strips.size() == 1);
+    CHECK(one.strips[0].side == Side::front);
+    const PrintMesh two = strips("front_strip", "back_strip");
+    CHECK(two.strip == std::vector<StripPair>{{1, 0}, {.front = 1}});
+    REQUIRE(two.strips.size() == 2);
+    CHECK(two.strips[0].side == Side::back);
+    CHECK(two.strips[0].thickness == 0.4);
+    CHECK(strips("strip", "back_strip").strip == std::vector<StripPair>{{1, 0}, {.front = 1}});
+}
+
 TEST_CASE("mesh input: OBJ with a table of thicknesses") {
     const Folder folder;
     const std::string obj = folder.write("m.obj",
@@ -154,10 +174,14 @@ TEST_CASE("mesh input: OBJ with a table of thicknesses") {
         obj, folder.write("t.csv", "# comment\ntriangle, front_mm, back_mm\n1; 0.2 ; 0.3 # both\n\n0,0.6\n"));
     CHECK(m.mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
     CHECK(m.print == std::vector<Print>{{.front = 0.6}, {.front = 0.2, .back = 0.3}});
-    CHECK(m.strips[1].side == Side::back);
+    REQUIRE(m.strips.size() == 3);
+    CHECK(m.strip == std::vector<StripPair>{{.front = 0}, {.front = 1, .back = 2}});
+    CHECK(m.strips[1].side == Side::front);
+    CHECK(m.strips[2].side == Side::back);
+    CHECK(m.strips[2].thickness == 0.3);
     const PrintMesh bare = read_print_mesh(obj, folder.write("e.csv", "triangle,front_mm\n"));
     CHECK(bare.strips.empty());
-    CHECK(bare.strip == std::vector<int>{-1, -1});
+    CHECK(bare.strip == std::vector<StripPair>(2));
 }
 
 TEST_CASE("mesh input: a clockwise sheet is turned, unused vertices are left out with a warning") {
@@ -180,7 +204,7 @@ TEST_CASE("mesh input: a strip's centre line runs along its middle from end to e
     double left = 20;
     double right = 0;
     for (const MeshPoint& p : line) {
-        CHECK(m.strip[p.triangle] == 0);
+        CHECK(m.strip[p.triangle] == StripPair{.front = 0});
         Vec2 x = Vec2::Zero();
         for (int k = 0; k < 3; ++k) x += p.weights[k] * m.mesh.vertices[m.mesh.triangles[p.triangle][k]];
         // A midline of a region is good to 1 % of its border; its last points may lean towards a corner.

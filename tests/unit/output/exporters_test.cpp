@@ -92,8 +92,8 @@ TEST_CASE("ply: header and first rows are what was put in") {
     const std::string file = to_ply(released(two_triangles()));
     CHECK(file.find(
               "property list uchar int vertex_indices\nproperty double front_mm\nproperty double back_mm\n"
-              "property int side\nproperty int strip\nproperty float curvature_max_per_mm\n") !=
-          std::string::npos);
+              "property int side\nproperty int strip\nproperty int front_strip\nproperty int "
+              "back_strip\nproperty float curvature_max_per_mm\n") != std::string::npos);
     CHECK(file.find("end_header\n0 0 0 ") != std::string::npos);
     CHECK(file.find("\n0 2 0.5 ") != std::string::npos);
     CHECK(file.find("\n3 0 1 2 0.6 0 1 0 ") != std::string::npos);

@@ -30,8 +30,10 @@ PrintMesh read_back(const PrintMesh& layout, bool thickness_alone = false) {
     for (const Vec2& v : layout.mesh.vertices) result.shape.emplace_back(v.x(), v.y(), 0.0);
     std::string text = to_ply(layout_surface(result, surface_fields(result)));
     if (thickness_alone) {
-        const std::string property = "property int strip\n";
-        text.replace(text.find(property), property.size(), "property int other\n");
+        for (const std::string property : {"strip", "front_strip", "back_strip"}) {
+            const std::string line = "property int " + property + "\n";
+            text.replace(text.find(line), line.size(), "property int other\n");
+        }
     }
     const auto path = std::filesystem::temp_directory_path() /
                       fmt::format("ruche-layout-{}.ply", reinterpret_cast<std::uintptr_t>(&layout));
@@ -103,6 +105,45 @@ TEST_CASE("mesh input: strips of a mesh file are as curved and as long as the dr
             CHECK(std::abs(found[i].printed_length - wanted[i].printed_length) < 2e-5);
             CHECK(std::abs(found[i].stretch - wanted[i].stretch) < size * size / (radius * radius) / 24);
         }
+    }
+}
+
+TEST_CASE("mesh input: crossing strips on either side are both measured over their full length") {
+    Pattern drawn;
+    const auto add = [&](const std::string& id, const Vec2& half, Side side, double thickness) {
+        const Vec2 across = 0.5 * Vec2(-half.y(), half.x()).normalized();
+        const Polyline outline = {-half - across, half - across, half + across, across - half};
+        drawn.strips.push_back({.id = id,
+                                .region = {{outline, {}}},
+                                .centreline = {{-half, half}},
+                                .thickness = thickness,
+                                .side = side});
+    };
+    add("front", Vec2(10, 0), Side::front, 0.6);
+    add("back", Vec2(2, 8), Side::back, 0.9);
+    const PrintMesh layout = mesh_pattern(finish_pattern(drawn, 2.0), {.size_mm = 0.5});
+    const std::vector<Vec3> shape = rolled(layout, 30.0);
+    const double length[] = {20.0, 2.0 * std::hypot(2.0, 8.0)};
+    // By number, and by what hangs together on one side: without numbers the front comes first if its first
+    // triangle does.
+    for (const bool thickness_alone : {false, true}) {
+        CAPTURE(thickness_alone);
+        const PrintMesh again = read_back(layout, thickness_alone);
+        if (!thickness_alone) CHECK(again.strip == layout.strip);
+        REQUIRE(again.strips.size() == 2);
+        const std::vector<StripMetrics> found = measure_strips(again, shape);
+        const std::vector<StripMetrics> wanted = measure_strips(layout, shape);
+        for (std::size_t i = 0; i < 2; ++i) {
+            CAPTURE(again.strips[i].id);
+            const std::size_t own = again.strips[i].side == Side::front ? 0 : 1;
+            CHECK(again.strips[i].thickness == layout.strips[own].thickness);
+            CHECK(again.strips[i].centreline.size() == 1);
+            CHECK(wanted[own].printed_length == doctest::Approx(length[own]).epsilon(1e-6));
+            CHECK(found[i].printed_length == doctest::Approx(length[own]).epsilon(1e-6));
+            CHECK(found[i].curvature == doctest::Approx(wanted[own].curvature).epsilon(1e-3));
+            CHECK(found[i].stretch == doctest::Approx(wanted[own].stretch).epsilon(1e-4));
+        }
+        CHECK(again.strips[0].side != again.strips[1].side);
     }
 }
 

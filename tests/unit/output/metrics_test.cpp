@@ -44,7 +44,7 @@ PrintMesh strip_mesh(double length, double width, int along, int across, Kind ki
         }
     }
     result.print.assign(mesh.triangles.size(), {.front = 0.6});
-    result.strip.assign(mesh.triangles.size(), 0);
+    result.strip.assign(mesh.triangles.size(), {.front = 0});
     return result;
 }
 

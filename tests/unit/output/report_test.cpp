@@ -17,7 +17,7 @@ Result small_result() {
     result.layout.mesh.vertices = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
     result.layout.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
     result.layout.print = {{.front = 0.6}, {}};
-    result.layout.strip = {0, -1};
+    result.layout.strip = {{.front = 0}, {}};
     MeshedStrip strip{.id = "strip-1", .thickness = 0.6};
     strip.centreline = {{{0, {0.8, 0.1, 0.1}}, {0, {0.5, 0.25, 0.25}}, {0, {0.2, 0.4, 0.4}}}};
     result.layout.strips = {strip};

@@ -49,8 +49,9 @@ Result result(TriangleMesh mesh, const std::vector<SampleStrip>& strips,
         int on = -1;
         for (std::size_t s = 0; s < strips.size(); ++s)
             if (strips[s].covers(centroid)) on = static_cast<int>(s);
-        r.layout.strip.push_back(on);
-        r.layout.print.push_back(on < 0 ? Print{} : strips[on].print);
+        const Print print = on < 0 ? Print{} : strips[on].print;
+        r.layout.strip.push_back({.front = print.front > 0.0 ? on : -1, .back = print.back > 0.0 ? on : -1});
+        r.layout.print.push_back(print);
     }
     for (const Vec2& v : r.layout.mesh.vertices) r.shape.push_back(shape(v));
     r.scene.file = "sample.toml";

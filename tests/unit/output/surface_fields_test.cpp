@@ -18,7 +18,8 @@ TEST_CASE("surface fields: print, side and strip come from the layout, triangle 
     for (std::size_t t = 0; t < count; ++t) {
         CHECK(fields.front_mm[t] == result.layout.print[t].front);
         CHECK(fields.back_mm[t] == result.layout.print[t].back);
-        CHECK(fields.strip[t] == result.layout.strip[t]);
+        CHECK(fields.strip[t] == main_strip(result.layout, static_cast<int>(t)));
+        CHECK(fields.strips[t] == result.layout.strip[t]);
         const int side = (fields.front_mm[t] > 0 ? 1 : 0) + (fields.back_mm[t] > 0 ? 2 : 0);
         CHECK(static_cast<int>(fields.side[t]) == side);
         ++seen[side];
