@@ -260,9 +260,11 @@ void bind_model(py::module_& m) {
             [](const Model& self, const Eigen::VectorXd& x) {
                 check_size(self, x);
                 const EnergyTerms terms = self.energy_terms(x);
-                return py::dict("fabric_membrane"_a = terms.fabric_membrane,
-                                "fabric_bending"_a = terms.fabric_bending, "plastic"_a = terms.plastic,
-                                "gravity"_a = terms.gravity, "contact"_a = terms.contact);
+                py::dict by_term("fabric_membrane"_a = terms.fabric_membrane,
+                                 "fabric_bending"_a = terms.fabric_bending, "plastic"_a = terms.plastic,
+                                 "gravity"_a = terms.gravity);
+                if (self.input().options.contact) by_term["contact"] = terms.contact;
+                return by_term;
             },
             "x"_a, "mJ by term");
 }

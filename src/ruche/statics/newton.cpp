@@ -1,0 +1,311 @@
+#include "ruche/statics/newton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "ruche/core/memory.hpp"
+#include "ruche/statics/starts.hpp"
+#include "ruche/statics/tangle.hpp"
+
+namespace ruche {
+
+static std::vector<char> held_unknowns(const Model& model) {
+    std::vector<char> held(model.size(), 0);
+    for (const Support& support : model.input().supports) {
+        for (int c = 0; c < 3; ++c) held[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
+    }
+    return held;
+}
+
+Newton::Newton(const Model& model, const SolveOptions& options, const Control& control)
+    : Newton(model, options, control, vertex_elimination_order(model.pattern())) {}
+
+Newton::Newton(const Model& model, const SolveOptions& options, const Control& control,
+               const std::vector<int>& vertex_order)
+    : original_(&model),
+      options_(options),
+      control_(control),
+      held_(held_unknowns(model)),
+      retraction_(model, vertex_order),
+      system_(model, held_, vertex_order),
+      elimination_(model, held_) {
+    if (model.input().options.contact) {
+        own_.emplace(model.input());
+        contact_.emplace(model);
+    }
+}
+
+/// As the model does, with the supports' reactions taken out of the gradient.
+EnergyTerms Newton::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
+    const EnergyTerms terms = model().evaluate(x, order, sums);
+    for (int i = 0; i < model().size(); ++i) {
+        if (held_[i]) sums.gradient[i] = 0.0;
+    }
+    return terms;
+}
+
+double Newton::energy_scale() const {
+    return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
+           std::abs(terms_.gravity) + std::abs(terms_.contact);
+}
+
+bool Newton::is_good(const Eigen::VectorXd& x) const { return tangle(model().health(x)).empty(); }
+
+double Newton::largest_turn() const {
+    return wary_ ? std::min(wary_turn, options_.largest_turn) : options_.largest_turn;
+}
+
+/// Exchanges the model for one with a narrower linear extension when the shape leans on it.
+bool Newton::narrow_extension() {
+    const double narrow = options_.narrow_log_extension;
+    if (narrow == 0.0 || narrow >= model().input().options.log_extension ||
+        model().elements_beyond_law(x_) == 0) {
+        return false;
+    }
+    ModelInput input = model().input();
+    input.options.log_extension = narrow;
+    std::vector<ContactPair> contacts = model().contacts();
+    own_.emplace(std::move(input));
+    if (contact_) own_->set_contacts(std::move(contacts));
+    return true;
+}
+
+/// The curve from the present state along a direction, `length` of it, as far as the way is clear.
+ClearPath Newton::follow(const Eigen::VectorXd& direction, double length) {
+    const StateCurve curve = [this, &direction, length](double t) {
+        return retraction_(x_, direction, t * length);
+    };
+    if (!contact_) return ClearPath(curve);
+    return contact_->follow(x_, curve, std::abs(length) * retraction_.rms_rotation(x_, direction));
+}
+
+/// Before an energy at `x` is asked for: the model must know what touches there, and still at the present
+/// state.
+void Newton::cover_contacts(const Eigen::VectorXd& x) {
+    if (contact_ && contact_->cover(*own_, x_, x)) system_.change_pattern();
+}
+
+/// Armijo's rule along the retraction; false when no step of reasonable length lowers energy or residual.
+bool Newton::line_search() {
+    const double energy = terms_.total();
+    const double slope = sums_.gradient.dot(step_);
+    const double before = residual();
+    const ClearPath path = follow(step_, 1.0);
+    step_length_ = std::min(path.end(), largest_turn() / rotation_);
+    for (int halving = 0; halving < 30; ++halving, step_length_ *= 0.5) {
+        const double t = step_length_;
+        const Eigen::VectorXd candidate = path.at(t);
+        cover_contacts(candidate);
+        if (!may_take(candidate)) continue;
+        if (std::abs(slope) < 1e-9 * energy_scale()) {
+            // Energy differences drown in rounding: judge by the gradient.
+            const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
+            if (std::isfinite(terms.total()) && trial_.gradient.cwiseAbs().maxCoeff() < before) {
+                x_ = candidate;
+                return true;
+            }
+            if (std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
+        }
+        const double trial = model().energy(candidate);
+        if (std::isfinite(trial) && trial <= energy + 1e-4 * t * slope) {
+            x_ = candidate;
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Nonlinear elimination after a step, unless Newton's method converges well without it.
+void Newton::relax_spots() {
+    constexpr double converging = 0.01;
+    const double before = residual();
+    evaluate(x_, Order::gradient, trial_);
+    if (!(trial_.gradient.cwiseAbs().maxCoeff() > converging * before)) return;
+    const Eigen::VectorXd from = x_;
+    elimination_(model(), x_, trial_.gradient);
+    // It knows neither of tangles nor of obstacles that are not near already.
+    if (!may_take(x_) || (contact_ && !contact_->clear(from, x_))) x_ = from;
+    cover_contacts(x_);
+}
+
+/// At a stationary point whose exact Hessian is indefinite: moves to lower energy along the direction of most
+/// negative curvature.
+bool Newton::leave_saddle() {
+    Eigen::VectorXd direction(model().size());
+    for (int i = 0; i < model().size(); ++i) direction[i] = held_[i] ? 0.0 : noise(options_.seed + 77, i);
+    if (!system_.steepest_curvature(here(), direction)) return false;
+    direction /= direction.head(3 * model().vertex_count()).cwiseAbs().maxCoeff();
+    if (direction.dot(sums_.gradient) > 0.0) direction = -direction;
+    const double energy = terms_.total();
+    double best_energy = energy - 1e-14 * energy_scale();
+    Eigen::VectorXd best;
+    for (double length = 4.0; length > 1e-4; length *= 0.5) {
+        for (const double sign : {1.0, -1.0}) {
+            const ClearPath path = follow(direction, sign * length);
+            const Eigen::VectorXd candidate = path.at(path.end());
+            cover_contacts(candidate);
+            const double trial = model().energy(candidate);
+            if (std::isfinite(trial) && trial < best_energy && may_take(candidate)) {
+                best_energy = trial;
+                best = candidate;
+            }
+        }
+        if (best.size() > 0) break;
+    }
+    if (best.size() == 0) return false;
+    x_ = best;
+    cover_contacts(x_);
+    return true;
+}
+
+void Newton::report() const {
+    control_.say({"release", -1.0,
+                  fmt::format("iteration {}: energy {:.6f} mJ, residual {:.1e} N", iterations_,
+                              terms_.total(), residual())});
+}
+
+void Newton::announce() const {
+    control_.say(
+        {"release", -1.0,
+         fmt::format("{} triangles, {} unknowns, factor of {:.0f} MB", model().input().mesh.triangle_count(),
+                     model().size(), system_.factor_megabytes())});
+}
+
+/// Says so when the factor and the matrices that go with it do not fit into memory; else empty.
+std::string Newton::missing_memory() const {
+    constexpr double megabyte = 1e6;
+    constexpr double matrices =
+        5.0;  // exact, Gauss-Newton, their mean, a trial's, the one that is factorised
+    const double needed =
+        1.05 * system_.factor_megabytes() +
+        matrices * sizeof(double) * static_cast<double>(model().pattern().row_index().size()) / megabyte;
+    double available = static_cast<double>(memory_available()) / megabyte;
+    if (options_.memory_limit_mb > 0.0) {
+        const double left = options_.memory_limit_mb - static_cast<double>(memory_in_use()) / megabyte;
+        available = std::min(available, left);
+    }
+    if (needed <= available) return {};
+    return fmt::format(
+        "not enough memory for this mesh: the factorisation needs {:.0f} MB more, {:.0f} MB are available",
+        needed, std::max(0.0, available));
+}
+
+Equilibrium Newton::run(const Eigen::VectorXd& start) {
+    x_ = retraction_.meet_supports(start);
+    rotation_ = infinity;
+    Equilibrium result;
+    result.residual = infinity;
+    result.message = missing_memory();
+    try {
+        if (result.message.empty()) {
+            iterate(result);
+        } else {
+            terms_ = model().energy_terms(x_);
+        }
+    } catch (const std::bad_alloc&) {
+        result.message = fmt::format("out of memory after {} iterations", iterations_);
+    }
+    result.x = x_;
+    result.energy = terms_;
+    result.typical_force = model().typical_force(x_);
+    result.iterations = iterations_;
+    result.factorizations = system_.factorizations();
+    result.health = model().health(x_);
+    result.health.tangled = !tangle(result.health).empty();
+    result.log_extension = model().input().options.log_extension;
+    return result;
+}
+
+/// Whether something else than a minimum ends the run: enough for a start, limits, a stop.
+bool Newton::must_stop(Equilibrium& result, int first_iteration) const {
+    if (rotation_ < options_.enough_rotation) {
+        result.message = "close enough for a start";
+    } else if (iterations_ - first_iteration >= options_.max_iterations) {
+        result.message = fmt::format("not converged after {} iterations", options_.max_iterations);
+    } else if (control_.timed_out()) {
+        result.message = fmt::format("the time limit was reached after {} iterations", iterations_);
+    } else if (control_.stopped()) {
+        result.status = SolveStatus::interrupted;
+        result.message = "interrupted";
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/// One step: solve, line search. False when no step lowers energy or residual.
+bool Newton::step(Order order) {
+    const bool exact = order == Order::hessian;
+    const bool solved =
+        exact ? system_.exact_step(here(), rotation_, step_) : system_.gauss_newton_step(here(), step_);
+    if (!solved) return false;
+    rotation_ = retraction_.rms_rotation(x_, step_);
+    const bool moved = line_search();
+    if (exact) system_.adapt(step_length_);
+    return moved;
+}
+
+void Newton::iterate(Equilibrium& result) {
+    const bool loaded = !model().input().supports.empty() || !model().input().forces.empty();
+    const int first_iteration = iterations_;
+    const double tolerance = options_.residual_tolerance_n;
+    int escapes = 0;
+    bool stalled = false;
+    cover_contacts(x_);
+    const bool impossible = contact_ && passes_through_itself(model(), x_);
+    for (;;) {
+        const bool exact = loaded || rotation_ <= turning;
+        const Order order = exact ? Order::hessian : Order::gauss_newton;
+        evaluate(order);
+        constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
+        if ((rotation_ < settled || residual() <= tolerance) && narrow_extension()) evaluate(order);
+        report();
+        if (is_good(x_)) last_good_ = x_;
+        result.residual = residual();
+        if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
+            result.message = "the start is not a possible shape: its energy is not finite";
+            return;
+        }
+        if (impossible) {
+            result.message = "the start passes through itself: contact cannot undo that";
+            return;
+        }
+        const bool at_rest = result.residual <= tolerance;
+        const bool rounded = !at_rest && exact && at_rest_or_rounded(here(), tolerance);
+        if (at_rest || rounded || stalled) {
+            if (!exact) evaluate(Order::hessian);
+            result.stable = system_.certify(here());
+            if (result.stable || escapes == 5) {
+                result.status = at_rest || rounded ? SolveStatus::converged : SolveStatus::not_converged;
+                result.message = result.stable ? "strict local minimum" : "stationary, but not a minimum";
+                if (rounded) result.message += ", to the last digits of the positions";
+                if (stalled && !at_rest && !rounded)
+                    result.message = "no step lowers energy or residual any further";
+                return;
+            }
+            ++escapes;
+            stalled = false;
+            if (!leave_saddle()) {
+                result.message = "a saddle that could not be left";
+                return;
+            }
+            rotation_ = turning;
+            continue;
+        }
+        if (must_stop(result, first_iteration)) return;
+        ++iterations_;
+        stalled = !step(order);
+        if (stalled && !exact) {
+            // Try the exact Hessian before giving up.
+            rotation_ = turning;
+            evaluate(Order::hessian);
+            stalled = !step(Order::hessian);
+        }
+        if (!stalled) relax_spots();
+    }
+}
+
+}  // namespace ruche

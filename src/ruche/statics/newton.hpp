@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "ruche/core/control.hpp"
+#include "ruche/statics/contact_guard.hpp"
+#include "ruche/statics/equilibrium.hpp"
+#include "ruche/statics/newton_system.hpp"
+#include "ruche/statics/nonlinear_elimination.hpp"
+#include "ruche/statics/retraction.hpp"
+
+namespace ruche {
+
+/// Newton's method for one sheet: steps along the rotation-strain retraction, with the Gauss-Newton form
+/// while the sheet turns and the exact Hessian after; leaves saddles; ends with the certificate. For
+/// equilibrium.cpp.
+class Newton {
+  public:
+    /// `model`, `control`: have to stay. Throws std::bad_alloc.
+    Newton(const Model& model, const SolveOptions& options, const Control& control);
+    Newton(const Newton&) = delete;  // its parts refer to one another
+    Newton& operator=(const Newton&) = delete;
+
+    /// Tells how large the system of equations is.
+    void announce() const;
+
+    /// From a state to where it leads. A stop, limits of time and memory, and failures stand in the result.
+    Equilibrium run(const Eigen::VectorXd& start);
+
+    /// The start that a shape on another mesh of the layout makes.
+    Eigen::VectorXd carried_over(const LayoutShape& start) { return transfer(start, model(), retraction_); }
+
+    /// From now on no step leads into a tangle, and none turns the sheet far.
+    void be_wary() { wary_ = true; }
+
+    /// The last state of all runs that is no tangle; empty when there was none.
+    const Eigen::VectorXd& last_good() const { return last_good_; }
+
+  private:
+    /// rms rotation of a step, rad: above it the sheet is "turning" and the Gauss-Newton form is the better
+    /// model.
+    static constexpr double turning = 0.05;
+    static constexpr double wary_turn = 0.3;  // rad, rms: how far a wary step may turn the sheet
+
+    Newton(const Model& model, const SolveOptions& options, const Control& control,
+           const std::vector<int>& vertex_order);
+    const Model& model() const { return own_ ? *own_ : *original_; }
+    NewtonPoint here() const { return {model(), x_, sums_}; }
+    EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
+    void evaluate(Order order) { terms_ = evaluate(x_, order, sums_); }
+    double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
+    double energy_scale() const;
+    bool is_good(const Eigen::VectorXd& x) const;
+    bool may_take(const Eigen::VectorXd& x) const { return !wary_ || is_good(x); }
+    double largest_turn() const;
+
+    void iterate(Equilibrium& result);
+    bool step(Order order);
+    bool must_stop(Equilibrium& result, int first_iteration) const;
+    bool narrow_extension();
+    ClearPath follow(const Eigen::VectorXd& direction, double length);
+    void cover_contacts(const Eigen::VectorXd& x);
+    bool line_search();
+    void relax_spots();
+    bool leave_saddle();
+    std::string missing_memory() const;
+    void report() const;
+
+    const Model* original_;
+    std::optional<Model> own_;  // the same sheet with the narrower extension of the law, or with contacts
+    std::optional<ContactGuard> contact_;
+    SolveOptions options_;
+    const Control& control_;
+    std::vector<char> held_;  // per unknown: by a support
+    Retraction retraction_;
+    NewtonSystem system_;
+    NonlinearElimination elimination_;
+
+    Eigen::VectorXd x_;
+    Eigen::VectorXd step_;
+    AssembledSums sums_;
+    AssembledSums trial_;
+    EnergyTerms terms_;
+    double step_length_ = 1.0;    // of the last line search; 1 = Newton's step
+    double rotation_ = infinity;  // rms of the last step
+    int iterations_ = 0;
+    bool wary_ = false;
+    Eigen::VectorXd last_good_;
+};
+
+}  // namespace ruche

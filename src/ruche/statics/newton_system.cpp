@@ -1,0 +1,171 @@
+#include "ruche/statics/newton_system.hpp"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ruche {
+namespace {
+
+constexpr double first_share = 0.1;
+constexpr double share_factor = 4.0;  // by which the share grows and falls
+
+SparseCholesky analysed(const Model& model, const std::vector<int>& vertex_order) {
+    const SymmetricPattern pattern{model.size(), model.pattern().column_start(), model.pattern().row_index()};
+    return {pattern, elimination_order(model, vertex_order)};
+}
+
+}  // namespace
+
+NewtonSystem::NewtonSystem(const Model& model, const std::vector<char>& held,
+                           const std::vector<int>& vertex_order)
+    : held_(held), rigid_(model), cholesky_(analysed(model, vertex_order)) {}
+
+void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift) {
+    const NodePattern& pattern = at.model.pattern();
+    matrix_ = at.sums.hessian;
+    rigid_.hold(pattern, at.x,
+                order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
+                                        : RigidMotions::Resisting::supports,
+                matrix_);
+    const std::vector<int>& start = pattern.column_start();
+    const std::vector<int>& row = pattern.row_index();
+    const bool supported = !at.model.input().supports.empty();
+    for (int column = 0; column < at.model.size() && (supported || shift != 0.0); ++column) {
+        for (int k = start[column]; k < start[column + 1]; ++k) {
+            if (row[k] == column) matrix_[k] += shift;
+            if (held_[column] || held_[row[k]]) matrix_[k] = row[k] == column ? 1.0 : 0.0;
+        }
+    }
+}
+
+bool NewtonSystem::factorize(const NewtonPoint& at, Order order, double shift) {
+    build_matrix(at, order, shift);
+    if (pattern_is_new_) cholesky_ = analysed(at.model, vertex_elimination_order(at.model.pattern()));
+    pattern_is_new_ = false;
+    ++factorizations_;
+    const bool definite = cholesky_.factorize(matrix_);
+    factor_is_near_ = definite && order == Order::hessian && shift == 0.0;
+    return definite;
+}
+
+bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
+    if (share_ == 0.0 && factorize(at, Order::hessian)) return true;
+    at.model.evaluate(at.x, Order::gauss_newton, gauss_newton_);
+    mean_.gradient = at.sums.gradient;
+    mean_.hessian.resize(at.sums.hessian.size());
+    for (share_ = std::max(share_, first_share);; share_ = std::min(1.0, share_factor * share_)) {
+        for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
+            mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
+        if (factorize({at.model, at.x, mean_}, Order::gauss_newton)) return true;
+        if (share_ == 1.0) return false;
+    }
+}
+
+void NewtonSystem::adapt(double length) {
+    if (length < 1.0) {
+        share_ = std::clamp(share_factor * share_, 0.5 * first_share, 1.0);
+    } else {
+        share_ /= share_factor;
+        if (share_ < 0.3 * first_share) share_ = 0.0;
+    }
+}
+
+/// The exact step to a part in a thousand. False when that would take long or the Hessian is not positive
+/// definite.
+bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd& step) {
+    constexpr double accuracy = 1e-3;  // of the residual
+    constexpr int most_steps = 4;      // a solve costs about a tenth of a factorisation
+    build_matrix(at, Order::hessian, 0.0);
+    const NodePattern& pattern = at.model.pattern();
+    const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
+        at.model.size(), at.model.size(), static_cast<Eigen::Index>(matrix_.size()),
+        pattern.column_start().data(), pattern.row_index().data(), matrix_.data());
+    Eigen::VectorXd rest = -at.sums.gradient;
+    const double enough = accuracy * rest.norm();
+    Eigen::VectorXd direction = cholesky_.solve(rest);
+    double product = rest.dot(direction);
+    step.setZero(at.model.size());
+    for (int i = 0; i < most_steps; ++i) {
+        const Eigen::VectorXd pull = matrix.selfadjointView<Eigen::Lower>() * direction;
+        const double curvature = direction.dot(pull);
+        if (!(curvature > 0.0)) return false;
+        step += (product / curvature) * direction;
+        rest -= (product / curvature) * pull;
+        if (rest.norm() < enough) return true;
+        const Eigen::VectorXd next = cholesky_.solve(rest);
+        const double next_product = rest.dot(next);
+        direction = next + (next_product / product) * direction;
+        product = next_product;
+    }
+    return false;
+}
+
+bool NewtonSystem::finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step) {
+    if (ready) step = cholesky_.solve(-at.sums.gradient);
+    return ready && step.allFinite();
+}
+
+bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::VectorXd& step) {
+    constexpr double near = 0.03;  // rad
+    if (factor_is_near_ && rotation < near && solve_with_last_factor(at, step)) return true;
+    const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
+    if (loaded(at.model)) {
+        bool ready = factorize(at, Order::hessian);
+        for (shift_ = ready ? shift_ : std::max(0.1 * shift_, 1e-9 * mean); !ready && shift_ < 1e3 * mean;
+             shift_ *= 4.0)
+            ready = factorize(at, Order::hessian, shift_);
+        return finish(at, ready, step);
+    }
+    if (factorize_mean(at)) return finish(at, true, step);
+    return gauss_newton_step({at.model, at.x, mean_}, step);
+}
+
+bool NewtonSystem::gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step) {
+    const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
+    bool ready = factorize(at, Order::gauss_newton);
+    for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
+        ready = factorize(at, Order::gauss_newton, shift);
+    return finish(at, ready, step);
+}
+
+bool NewtonSystem::certify(const NewtonPoint& at) { return factorize(at, Order::hessian); }
+
+bool NewtonSystem::steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& direction) {
+    const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
+    bool ready = false;
+    for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0)
+        ready = factorize(at, Order::hessian, shift);
+    if (!ready) return false;
+    for (int i = 0; i < 20; ++i) direction = cholesky_.solve(direction.normalized()).col(0);
+    return true;
+}
+
+double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian) {
+    double sum = 0.0;
+    for (int node = 0; node < pattern.node_count(); ++node) {
+        const int block = pattern.block_offset(node, node);
+        for (int c = 0; c < pattern.node_size(node); ++c)
+            sum += std::abs(hessian[block + c * pattern.column_length(node) + c]);
+    }
+    return sum / pattern.unknown_count();
+}
+
+bool at_rest_or_rounded(const NewtonPoint& at, double tolerance) {
+    const std::vector<int>& start = at.model.pattern().column_start();
+    const std::vector<int>& row = at.model.pattern().row_index();
+    Eigen::VectorXd limit = Eigen::VectorXd::Zero(at.x.size());
+    for (Eigen::Index column = 0; column < at.x.size(); ++column) {
+        for (int k = start[column]; k < start[column + 1]; ++k) {
+            if (row[k] < column) continue;
+            const double stiffness = std::abs(at.sums.hessian[k]);
+            limit[row[k]] += stiffness * std::abs(at.x[column]);
+            if (row[k] != column) limit[column] += stiffness * std::abs(at.x[row[k]]);
+        }
+    }
+    limit *= std::numeric_limits<double>::epsilon();
+    return (at.sums.gradient.cwiseAbs().array() <= limit.array().max(tolerance)).all();
+}
+
+}  // namespace ruche

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "ruche/energy/model.hpp"
+#include "ruche/statics/rigid_motions.hpp"
+#include "ruche/statics/sparse_cholesky.hpp"
+
+namespace ruche {
+
+/// A state of a sheet with the derivatives of its energy there.
+struct NewtonPoint {
+    const Model& model;
+    const Eigen::VectorXd& x;
+    const AssembledSums& sums;  ///< gradient, and the Hessian as far as it has been asked for
+};
+
+/// The linear systems of Newton's method for one sheet and their factors: its pattern is analysed once, and
+/// again only when contacts change it.
+class NewtonSystem {
+  public:
+    /// `held`: one flag per unknown that a support holds; it has to stay. `vertex_order`: see
+    /// sparse_cholesky.hpp.
+    NewtonSystem(const Model& model, const std::vector<char>& held, const std::vector<int>& vertex_order);
+
+    /// Newton's step with the exact Hessian, which `at.sums` holds. While the sheet hardly turns (`rotation`,
+    /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick. Where the
+    /// Hessian is not positive definite, fabric is about to buckle: then with a mean of it and the
+    /// Gauss-Newton form; the latter's share is kept from step to step. On its own that form knows nothing of
+    /// the compression that makes fabric buckle, and a barely definite matrix runs far along the buckling
+    /// shapes.
+    ///
+    /// In a sheet that supports or loads hold, geometric stiffness is what resists (a pendulum has no other),
+    /// and the Gauss-Newton form lacks it: there a multiple of the identity is added, little more than it
+    /// takes.
+    ///
+    /// False when no matrix could be factorised. Throws std::bad_alloc.
+    [[nodiscard]] bool exact_step(const NewtonPoint& at, double rotation, Eigen::VectorXd& step);
+
+    /// The step with the Gauss-Newton form, which `at.sums` holds.
+    [[nodiscard]] bool gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step);
+
+    /// Whether the state is a strict minimum modulo free rigid motions: the exact Hessian has a Cholesky
+    /// factor.
+    [[nodiscard]] bool certify(const NewtonPoint& at);
+
+    /// A direction in which the exact Hessian curves down most, by inverse iteration from `direction`.
+    [[nodiscard]] bool steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& direction);
+
+    /// After a line search that went `length` of an exact step (1 = all of it): a step that was too long asks
+    /// for more of the Gauss-Newton form in the next matrix, one that was not for less.
+    void adapt(double length);
+
+    /// The model's pattern is another one from now on.
+    void change_pattern() { pattern_is_new_ = true; }
+
+    int factorizations() const { return factorizations_; }
+    double factor_megabytes() const { return cholesky_.factor_megabytes(); }
+
+  private:
+    bool loaded(const Model& model) const {
+        return !model.input().supports.empty() || !model.input().forces.empty();
+    }
+    void build_matrix(const NewtonPoint& at, Order order, double shift);
+    bool factorize(const NewtonPoint& at, Order order, double shift = 0.0);
+    bool factorize_mean(const NewtonPoint& at);
+    bool solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd& step);
+    bool finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step);
+
+    const std::vector<char>& held_;
+    RigidMotions rigid_;
+    SparseCholesky cholesky_;
+    std::vector<double> matrix_;
+    AssembledSums gauss_newton_;
+    AssembledSums mean_;
+    bool pattern_is_new_ = false;  // since the last factorisation
+    bool factor_is_near_ = false;  // the last factor is of an exact Hessian
+    double shift_ = 0.0;           // of the last indefinite Hessian, N/mm
+    double share_ = 0.0;           // of the Gauss-Newton form in the matrix
+    int factorizations_ = 0;
+};
+
+/// Mean magnitude of the diagonal of a Hessian, N/mm.
+double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian);
+
+/// Whether every component of the gradient is below `tolerance` (N) or below what the last digits of the
+/// positions decide, eps sum_j |H_ij| |x_j|: where fabric leans on the steep end of its law that may be more.
+/// `at.sums` holds the exact Hessian.
+bool at_rest_or_rounded(const NewtonPoint& at, double tolerance);
+
+}  // namespace ruche
