@@ -81,6 +81,7 @@ struct Health {
     double max_dihedral_deg = 0.0;
     double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
     int self_intersections = 0;          ///< pairs of triangles that pass through each other
+    bool tangled = false;                ///< a knot of the mesh and no shape of the sheet; see statics/tangle
 };
 
 /// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
@@ -148,7 +149,7 @@ class Model {
     /// How many bare elements are in the linear extension of the fabric's law.
     int elements_beyond_law(const Eigen::VectorXd& x) const;
 
-    /// Everything in Health but self-intersections.
+    /// Everything in Health that can be measured here: not self-intersections, nor the verdict `tangled`.
     Health health(const Eigen::VectorXd& x) const;
 
   private:

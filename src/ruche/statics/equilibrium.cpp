@@ -2,45 +2,23 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "ruche/core/error.hpp"
 #include "ruche/core/parallel.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
 #include "ruche/statics/rigid_motions.hpp"
+#include "ruche/statics/rounding.hpp"
 #include "ruche/statics/sparse_cholesky.hpp"
+#include "ruche/statics/starts.hpp"
+#include "ruche/statics/tangle.hpp"
+#include "ruche/statics/untangle.hpp"
 
 namespace ruche {
 namespace {
-
-/// Reproducible noise: a number in [-1, 1] from a seed and an index (SplitMix64).
-double noise(std::uint64_t seed, std::uint64_t index) {
-    std::uint64_t z = (seed << 40U) + (index + 1) * 0x9e3779b97f4a7c15ULL;
-    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
-    z ^= z >> 31U;
-    return static_cast<double>(z >> 11U) * 0x1.0p-52 - 1.0;
-}
-
-double smallest_edge(const TriangleMesh& mesh) {
-    double smallest = infinity;
-    for (const Triangle& tri : mesh.triangles) {
-        for (int i = 0; i < 3; ++i) {
-            smallest = std::min(smallest, (mesh.vertices[tri[i]] - mesh.vertices[tri[(i + 1) % 3]]).norm());
-        }
-    }
-    return smallest;
-}
-
-Eigen::VectorXd noisy_start(const Model& model, const SolveOptions& options) {
-    Eigen::VectorXd x = model.initial();
-    const double size = std::min(options.noise_mm, 0.01 * smallest_edge(model.input().mesh));
-    for (int i = 0; i < 3 * model.vertex_count(); ++i) x[i] += size * noise(options.seed, i);
-    return x;
-}
 
 std::string short_number(double value) {
     char text[32];
@@ -69,12 +47,17 @@ class Newton {
     }
 
     Equilibrium run(const Eigen::VectorXd& start);
-    Equilibrium run(const LayoutShape& start) { return run(transfer(start, model(), retraction_)); }
+    Eigen::VectorXd carried_over(const LayoutShape& start) { return transfer(start, model(), retraction_); }
+    /// From now on no step leads into a tangle, and none turns the sheet far.
+    void be_wary() { wary_ = true; }
+    /// The last state of all runs that is no tangle; empty when there was none.
+    const Eigen::VectorXd& last_good() const { return last_good_; }
 
   private:
     /// rms rotation of a step above which the sheet is "turning" and the Gauss-Newton form is the better
     /// model.
     static constexpr double turning = 0.05;
+    static constexpr double wary_turn = 0.3;  // rad, rms: how far a wary step may turn the sheet
 
     void evaluate(Order order) { terms_ = evaluate(x_, order, sums_); }
     /// As the model does, with the supports' reactions taken out of the gradient.
@@ -111,6 +94,15 @@ class Newton {
     bool line_search();
     void relax_spots();
     bool leave_saddle();
+    bool is_good(const Eigen::VectorXd& x) const { return tangle(model().health(x)).empty(); }
+    bool may_take(const Eigen::VectorXd& x) const { return !wary_ || is_good(x); }
+    /// Where the exact Hessian comes first, shifted where it is indefinite: such steps stay in the basin they
+    /// are in, which the Gauss-Newton form, blind to the geometric stiffness, readily leaves.
+    bool exact_first() const { return loaded_ || largest_turn() < infinity; }
+    double largest_turn() const {
+        return wary_ ? std::min(wary_turn, options_.largest_turn) : options_.largest_turn;
+    }
+    bool drowns_in_rounding(double last_residual) const;
     void report() const;
 
     const Model& model() const { return narrowed_ ? *narrowed_ : *original_; }
@@ -138,6 +130,8 @@ class Newton {
     double rotation_ = infinity;   // rms of the last step
     int iterations_ = 0;
     int factorizations_ = 0;
+    bool wary_ = false;
+    Eigen::VectorXd last_good_;
 };
 
 /// Exchanges the model for one with a narrower linear extension when the shape leans on it.
@@ -227,7 +221,7 @@ bool Newton::solve_step(Order order) {
         return true;
     bool ready = factorize(order);
     const double mean = ready ? 0.0 : mean_stiffness();
-    if (!ready && loaded_) {
+    if (!ready && exact_first()) {
         for (shift_ = std::max(0.1 * shift_, 1e-9 * mean); !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
             ready = factorize(order, shift_);
     } else if (!ready) {
@@ -247,9 +241,10 @@ bool Newton::line_search() {
     const double energy = terms_.total();
     const double slope = sums_.gradient.dot(step_);
     const double before = residual();
-    double t = 1.0;
+    double t = std::min(1.0, largest_turn() / rotation_);
     for (int halving = 0; halving < 30; ++halving, t *= 0.5) {
         const Eigen::VectorXd candidate = retraction_(x_, step_, t);
+        if (!may_take(candidate)) continue;
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
             const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
@@ -273,8 +268,16 @@ void Newton::relax_spots() {
     constexpr double converging = 0.01;
     const double before = residual();
     evaluate(x_, Order::gradient, trial_);
-    if (trial_.gradient.cwiseAbs().maxCoeff() > converging * before)
-        elimination_(model(), x_, trial_.gradient);
+    if (!(trial_.gradient.cwiseAbs().maxCoeff() > converging * before)) return;
+    const Eigen::VectorXd from = x_;
+    elimination_(model(), x_, trial_.gradient);
+    if (!may_take(x_)) x_ = from;
+}
+
+/// Whether the residual no longer falls because it is the rounding of the unknowns. `sums_` has the Hessian.
+bool Newton::drowns_in_rounding(double last_residual) const {
+    return residual() > 0.5 * last_residual &&
+           residual_beyond_rounding(model().pattern(), sums_, x_) <= options_.residual_tolerance_n;
 }
 
 /// At a stationary point whose exact Hessian is indefinite: finds the most negative direction by inverse
@@ -297,7 +300,7 @@ bool Newton::leave_saddle() {
         for (const double sign : {1.0, -1.0}) {
             const Eigen::VectorXd candidate = retraction_(x_, direction, sign * length);
             const double trial = model().energy(candidate);
-            if (std::isfinite(trial) && trial < best_energy) {
+            if (std::isfinite(trial) && trial < best_energy && may_take(candidate)) {
                 best_energy = trial;
                 best = candidate;
             }
@@ -318,30 +321,39 @@ void Newton::report() const {
 Equilibrium Newton::run(const Eigen::VectorXd& start) {
     x_ = retraction_.meet_supports(start);
     Equilibrium result;
+    result.residual = infinity;
+    rotation_ = infinity;
+    factor_is_near_ = false;
+    const int first_iteration = iterations_;
     int gauss_newton_left = 0;
     int escapes = 0;
     bool stalled = false;
     for (;;) {
-        const bool exact = loaded_ || (rotation_ <= turning && gauss_newton_left == 0);
+        const bool exact = exact_first() || (rotation_ <= turning && gauss_newton_left == 0);
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
         if ((rotation_ < settled || residual() <= options_.residual_tolerance_n) && narrow_extension())
             evaluate(order);
         report();
-        result.residual = residual();
+        if (is_good(x_)) last_good_ = x_;
+        const double last_residual = std::exchange(result.residual, residual());
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
             result.message = "the start is not a possible shape: its energy is not finite";
             break;
         }
-        if (result.residual <= options_.residual_tolerance_n || stalled) {
+        const bool drowned = exact && drowns_in_rounding(last_residual);
+        if (result.residual <= options_.residual_tolerance_n || stalled || drowned) {
             if (!exact) evaluate(Order::hessian);
             result.stable = factorize(Order::hessian);
             if (result.stable || escapes == 5) {
-                result.status = result.residual <= options_.residual_tolerance_n ? SolveStatus::converged
-                                                                                 : SolveStatus::not_converged;
+                const bool as_wanted = result.residual <= options_.residual_tolerance_n;
+                const bool converged = as_wanted || drowned || drowns_in_rounding(0.0);
+                result.status = converged ? SolveStatus::converged : SolveStatus::not_converged;
                 result.message = result.stable ? "strict local minimum" : "stationary, but not a minimum";
-                if (stalled) result.message = "no step lowers energy or residual any further";
+                if (converged && !as_wanted)
+                    result.message += "; the residual is the rounding of coordinates at very small elements";
+                if (!converged) result.message = "no step lowers energy or residual any further";
                 break;
             }
             ++escapes;
@@ -357,8 +369,8 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
             result.message = "close enough for a start";
             break;
         }
-        if (iterations_ >= options_.max_iterations) {
-            result.message = "not converged after " + std::to_string(iterations_) + " iterations";
+        if (iterations_ - first_iteration >= options_.max_iterations) {
+            result.message = "not converged after " + std::to_string(options_.max_iterations) + " iterations";
             break;
         }
         if (control_.stopped()) {
@@ -392,26 +404,9 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
     result.iterations = iterations_;
     result.factorizations = factorizations_;
     result.health = model().health(x_);
+    result.health.tangled = !tangle(result.health).empty();
     result.log_extension = model().input().options.log_extension;
     return result;
-}
-
-void require_held(const Model& model) {
-    const ModelInput& input = model.input();
-    const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
-    if (gravity.norm() == 0.0 || input.table.present) return;
-    const MeshPieces pieces = find_pieces(input.mesh);
-    std::vector<char> held(pieces.count, 0);
-    for (const Support& support : input.supports) {
-        if (pieces.of_vertex[support.vertex] >= 0) held[pieces.of_vertex[support.vertex]] = 1;
-    }
-    for (const char h : held) {
-        if (!h) {
-            throw InputError(
-                {.key = "gravity"}, "a piece of the sheet would fall for ever: nothing holds it",
-                "Add a [[support]], put it on a table (gravity.table = true), or remove gravity.");
-        }
-    }
 }
 
 }  // namespace
@@ -422,7 +417,14 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
     const auto begin = std::chrono::steady_clock::now();
     require_held(model);
     set_blas_threads(options.deterministic ? 1 : thread_count());
-    Equilibrium result = Newton(model, options, control).run(start);
+    Newton newton(model, options, control);
+    const Reruns reruns{
+        .run = [&](const Eigen::VectorXd& from) { return newton.run(from); },
+        .last_good = [&] { return newton.last_good(); },
+        .be_wary = [&] { newton.be_wary(); },
+        .flat = [&] { return noisy_start(model, options.seed + Reruns::other_noise, options.noise_mm); },
+        .rough = options.enough_rotation > 0.0};
+    Equilibrium result = solve_around_tangles(start(newton), reruns, control);
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.levels = {{.triangles = model.input().mesh.triangle_count(),
                       .iterations = result.iterations,
@@ -432,12 +434,14 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
 
 Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
                   const Eigen::VectorXd* start) {
-    return timed_solve(model, options, control, start != nullptr ? *start : noisy_start(model, options));
+    return timed_solve(model, options, control, [&](Newton&) {
+        return start != nullptr ? *start : noisy_start(model, options.seed, options.noise_mm);
+    });
 }
 
 Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
                   const LayoutShape& start) {
-    return timed_solve(model, options, control, start);
+    return timed_solve(model, options, control, [&](Newton& newton) { return newton.carried_over(start); });
 }
 
 }  // namespace ruche
