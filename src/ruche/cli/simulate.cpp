@@ -1,6 +1,7 @@
 #include "ruche/scene/simulate.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -23,6 +24,7 @@ struct SimulateArguments {
     SceneArguments scene;
     std::string folder;
     std::string start;
+    int alternatives = 0;
     bool resume = false;
     bool quiet = false;
     bool verbose = false;
@@ -68,6 +70,19 @@ static std::string_view status_text(SolveStatus status) {
     return {};
 }
 
+/// A line per shape: number, energy, where it was found from.
+static void print_alternatives(const ShapeList& list) {
+    fmt::print("shapes     {} from {} further starts{}\n", list.shapes.size(), list.starts,
+               list.interrupted ? ", interrupted" : "");
+    for (const ShapeEntry& shape : list.shapes) {
+        const double lowest = list.shapes.front().energy;
+        fmt::print(
+            "  {}  {:.9g} mJ{}  {}{}\n", shape.number, shape.energy,
+            shape.number == 1 ? "" : fmt::format(" (+{:.2g} %)", 100.0 * (shape.energy / lowest - 1.0)),
+            shape.ordinary ? "this result; " : "", fmt::join(shape.found_from, ", "));
+    }
+}
+
 static void print_summary(const Result& result, double seconds, const std::vector<std::string>& files) {
     const Equilibrium& end = result.equilibrium;
     fmt::print("{}, {} after {} iterations: {}\n", status_text(end.status),
@@ -76,6 +91,7 @@ static void print_summary(const Result& result, double seconds, const std::vecto
     fmt::print("residual   {:.2g} N (typical force in an element: {:.2g} N)\n", end.residual,
                end.typical_force);
     fmt::print("curvature  {}\n", curvature_range(result));
+    if (result.alternatives) print_alternatives(*result.alternatives);
     fmt::print("time       {:.1f} s\n", seconds);
     print_list("warnings:", result.warnings);
     fmt::print("written:\n");
@@ -85,8 +101,10 @@ static void print_summary(const Result& result, double seconds, const std::vecto
             fmt::print("  {}\n", file);
 }
 
-static ExitCode exit_code(const Equilibrium& end) {
+static ExitCode exit_code(const Result& result) {
+    const Equilibrium& end = result.equilibrium;
     if (end.status == SolveStatus::interrupted) return ExitCode::interrupted;
+    if (result.alternatives && result.alternatives->interrupted) return ExitCode::interrupted;
     return end.status == SolveStatus::converged && end.stable ? ExitCode::converged : ExitCode::unfinished;
 }
 
@@ -113,14 +131,18 @@ static ExitCode run(const SimulateArguments& arguments) {
     } else if (!arguments.quiet) {
         control.report = [&](const Progress& progress) { display.show(progress); };
     }
-    const Result result = simulate(scene, control, start);
-    const std::vector<std::string> files = write_result(result, folder, control);
+    const ResultWithAlternatives found =
+        arguments.alternatives > 0
+            ? simulate_alternatives(scene, arguments.alternatives, control, start)
+            : ResultWithAlternatives{.ordinary = simulate(scene, control, start), .shapes = {}};
+    const std::vector<std::string> files = write_result(found, folder, control);
     display.clear();
+    const Result& result = found.ordinary;
 
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     if (!arguments.quiet && is_drawing(arguments.scene)) print_list("assumed:", result.assumptions);
     if (!arguments.quiet) print_summary(result, seconds.count(), files);
-    return exit_code(result.equilibrium);
+    return exit_code(result);
 }
 
 void add_simulate(CLI::App& program, Action& action) {
@@ -132,6 +154,12 @@ void add_simulate(CLI::App& program, Action& action) {
     CLI::Option* start = verb->add_option(
         "--start", arguments->start, "Begin with the shape of an earlier result, of this or another scene");
     start->type_name("RESULT");
+    verb->add_option(
+            "--alternatives", arguments->alternatives,
+            "Look for further stable shapes until there are N, this one included; each gets a folder "
+            "DIR/alternatives/1, 2, ... by energy")
+        ->type_name("N")
+        ->check(CLI::Range(1, 1000));
     verb->add_flag("--resume", arguments->resume, "Go on with the interrupted run in the output folder")
         ->excludes(start);
     CLI::Option* quiet = verb->add_flag("--quiet", arguments->quiet, "Say nothing but errors");

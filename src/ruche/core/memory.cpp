@@ -46,10 +46,4 @@ std::size_t memory_available() {
 
 std::size_t memory_in_use() { return kilobytes("/proc/self/status", "VmRSS:", 0); }
 
-std::size_t peak_memory() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::size_t>(usage.ru_maxrss) << 10U;
-}
-
 }  // namespace ruche

@@ -11,7 +11,4 @@ std::size_t memory_available();
 /// Bytes that the process holds in memory now.
 std::size_t memory_in_use();
 
-/// The most bytes that the process has held in memory at once so far.
-std::size_t peak_memory();
-
 }  // namespace ruche

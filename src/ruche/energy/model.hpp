@@ -87,6 +87,7 @@ struct Health {
     int self_intersections = 0;          ///< pairs of triangles that pass through each other
     int contact_pairs = 0;               ///< parts of the sheet that repel each other
     double smallest_gap = infinity;      ///< mm, between those
+    bool tangled = false;                ///< a knot of the mesh and no shape of the sheet; see statics/tangle
 };
 
 /// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
@@ -159,7 +160,7 @@ class Model {
     /// How many bare elements are in the linear extension of the fabric's law.
     int elements_beyond_law(const Eigen::VectorXd& x) const;
 
-    /// Everything in Health but self-intersections.
+    /// Everything in Health that can be measured here: not self-intersections, nor the verdict `tangled`.
     Health health(const Eigen::VectorXd& x) const;
 
   private:

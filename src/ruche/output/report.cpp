@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "ruche/output/metrics.hpp"
@@ -142,6 +143,7 @@ Json health_of(const Result& result) {
             {"max_dihedral_deg", health.max_dihedral_deg},
             {"max_edge_rotation_deg", health.max_edge_rotation_deg},
             {"elements_beyond_law", health.beyond_law},
+            {"tangled", health.tangled},
             {"self_intersections", health.self_intersections},
             {"contact_pairs", health.contact_pairs},
             {"smallest_gap_mm", health.smallest_gap},  // infinite when nothing touches: becomes null
@@ -171,6 +173,23 @@ Json shape_of(const Result& result) {
             {"printed_area_mm2", m.printed_area}};
 }
 
+Json alternatives_of(const ShapeList& list) {
+    Json shapes = Json::array();
+    for (const ShapeEntry& shape : list.shapes) {
+        const double lowest = list.shapes.front().energy;
+        shapes.push_back({{"folder", alternative_folder(shape.number)},
+                          {"energy_mJ", shape.energy},
+                          {"above_lowest", lowest == 0.0 ? 0.0 : (shape.energy - lowest) / std::abs(lowest)},
+                          {"ordinary", shape.ordinary},
+                          {"found_from", shape.found_from}});
+    }
+    return {{"shapes", shapes},
+            {"symmetries", list.symmetries},
+            {"starts", list.starts},
+            {"starts_without_result", list.without_result},
+            {"interrupted", list.interrupted}};
+}
+
 Json levels_of(const Equilibrium& equilibrium) {
     Json levels = Json::array();
     for (const LevelEffort& level : equilibrium.levels) {
@@ -182,6 +201,8 @@ Json levels_of(const Equilibrium& equilibrium) {
 }
 
 }  // namespace
+
+std::string alternative_folder(int number) { return fmt::format("alternatives/{}", number); }
 
 std::string report_json(const Result& result) {
     const Equilibrium& equilibrium = result.equilibrium;
@@ -196,6 +217,7 @@ std::string report_json(const Result& result) {
     json["health"] = health_of(result);
     json["shape"] = shape_of(result);
     json["strips"] = strips_of(result);
+    if (result.alternatives) json["alternatives"] = alternatives_of(*result.alternatives);
     json["assumptions"] = result.assumptions;
     json["warnings"] = result.warnings;
     json["parameters"] = all_parameters(result.scene);

@@ -11,4 +11,7 @@ namespace ruche {
 /// mended. Units are part of the keys.
 std::string report_json(const Result& result);
 
+/// Where the shape with this number lies in the folder of a result whose alternatives were looked for.
+std::string alternative_folder(int number);
+
 }  // namespace ruche

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "ruche/core/document.hpp"
+#include "ruche/output/report.hpp"
 #include "ruche/output/write_outputs.hpp"
 #include "ruche/scene/state.hpp"
 
@@ -45,14 +46,41 @@ bool holds_finished_result(const std::string& folder) {
     }
 }
 
+static std::string folder_of(const std::string& result, int number) {
+    return (fs::path(result) / alternative_folder(number)).string();
+}
+
+static void remove_alternatives(const std::string& folder, int first) {
+    std::error_code ignored;
+    for (int number = first; fs::exists(folder_of(folder, number), ignored); ++number)
+        remove_outputs(folder_of(folder, number));
+    fs::remove(fs::path(folder_of(folder, 1)).parent_path(), ignored);  // when it is empty
+}
+
 std::vector<std::string> write_result(const Result& result, const std::string& folder,
                                       const Control& control) {
     check_result_folder(folder);
-    if (result.equilibrium.status != SolveStatus::interrupted || !holds_finished_result(folder))
-        return write_outputs(result, folder, control, result.energy_density);
+    if (result.equilibrium.status != SolveStatus::interrupted || !holds_finished_result(folder)) {
+        std::vector<std::string> files = write_outputs(result, folder, control, result.energy_density);
+        const auto listed = result.alternatives ? result.alternatives->shapes.size() : 0;
+        remove_alternatives(folder, static_cast<int>(listed) + 1);
+        return files;
+    }
     const std::string path = (fs::path(folder) / "state.ruche").string();
     write_state(path, state_of(result));
     return {path};
+}
+
+std::vector<std::string> write_result(const ResultWithAlternatives& found, const std::string& folder,
+                                      const Control& control) {
+    std::vector<std::string> files;
+    const auto add = [&](const std::vector<std::string>& more) {
+        files.insert(files.end(), more.begin(), more.end());
+    };
+    for (std::size_t i = 0; i < found.shapes.size(); ++i)
+        add(write_result(found.shapes[i], folder_of(folder, static_cast<int>(i) + 1), control));
+    add(write_result(found.ordinary, folder, control));
+    return files;
 }
 
 }  // namespace ruche

@@ -5,6 +5,7 @@
 
 #include "ruche/core/control.hpp"
 #include "ruche/scene/result.hpp"
+#include "ruche/scene/simulate.hpp"
 
 namespace ruche {
 
@@ -17,8 +18,13 @@ bool holds_finished_result(const std::string& folder);
 
 /// `write_outputs`, but an interrupted result does not replace a finished one: then only state.ruche is
 /// written. Returns the paths written. Throws std::runtime_error when the disk does not take it; the earlier
-/// result is then still there.
+/// result is then still there. Alternatives of an earlier result that are not in this one's list are removed.
 std::vector<std::string> write_result(const Result& result, const std::string& folder,
+                                      const Control& control = {});
+
+/// The ordinary result in `folder`, each shape in a folder of its own below (see alternative_folder). Returns
+/// the paths written, the ordinary result's last.
+std::vector<std::string> write_result(const ResultWithAlternatives& found, const std::string& folder,
                                       const Control& control = {});
 
 }  // namespace ruche

@@ -107,4 +107,12 @@ std::vector<std::string> write_outputs(const Result& result, const std::string& 
     return written;
 }
 
+void remove_outputs(const std::string& dir) {
+    std::error_code ignored;
+    const fs::path folder = dir;
+    if (!fs::exists(folder / "report.json", ignored)) return;
+    for (const char* name : all_names) fs::remove(folder / name, ignored);
+    fs::remove(folder, ignored);  // fails when something else is in it
+}
+
 }  // namespace ruche

@@ -21,4 +21,8 @@ std::vector<std::string> write_outputs(const Result& result, const std::string& 
                                        const Control& control = {},
                                        std::span<const double> energy_density = {});
 
+/// Removes a result's files from a folder, and the folder when nothing else is in it; does nothing where
+/// there is no report.
+void remove_outputs(const std::string& dir);
+
 }  // namespace ruche

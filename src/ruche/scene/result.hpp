@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,23 @@
 #include "ruche/statics/equilibrium.hpp"
 
 namespace ruche {
+
+/// An entry of the list of a scene's stable shapes.
+struct ShapeEntry {
+    int number = 0;  ///< 1 has the lowest energy
+    double energy = 0.0;
+    bool ordinary = false;                ///< the one that the scene's release leads to
+    std::vector<std::string> found_from;  ///< the starts that led there
+};
+
+/// What a search for further stable shapes has found.
+struct ShapeList {
+    std::vector<ShapeEntry> shapes;       ///< lowest energy first
+    std::vector<std::string> symmetries;  ///< of the sheet; images under them are not listed
+    int starts = 0;
+    int without_result = 0;  ///< starts that ended in no certified minimum
+    bool interrupted = false;
+};
 
 /// A finished (or interrupted) run: the complete resolved scene, the mesh, the shape and how it was reached.
 struct Result {
@@ -22,6 +40,7 @@ struct Result {
     std::vector<std::string>
         assumptions;  ///< "fabric_thickness = 0.46 mm: not in the paper, implied by k_B", ...
     std::vector<std::string> warnings;
+    std::optional<ShapeList> alternatives;  ///< when they were looked for
     std::map<std::string, double> seconds;  ///< by phase: read, mesh, release, ...
 };
 

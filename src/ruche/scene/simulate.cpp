@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "ruche/core/parallel.hpp"
+#include "ruche/scene/alternatives.hpp"
 #include "ruche/scene/build.hpp"
 #include "ruche/scene/check_scene.hpp"
 #include "ruche/scene/release.hpp"
@@ -44,17 +45,14 @@ std::string self_intersection_warning(const Result& result) {
         carrier(result.layout, first.triangles[1]));
 }
 
-}  // namespace
+/// A run before its release: what all shapes of the scene have in common.
+struct Prepared {
+    Result result;
+    Model model;
+    Stopwatch watch;
+};
 
-std::vector<char> passes_through_itself(const Result& result) {
-    std::vector<char> marks(result.layout.mesh.triangles.size(), 0);
-    for (const Intersection& pair : result.self_intersections) {
-        for (const int t : pair.triangles) marks[static_cast<std::size_t>(t)] = 1;
-    }
-    return marks;
-}
-
-Result simulate(const Scene& scene, const Control& control, const Start& start) {
+Prepared prepare(const Scene& scene, const Control& control) {
     Stopwatch watch;
     Result result;
     result.scene = scene;
@@ -72,34 +70,94 @@ Result simulate(const Scene& scene, const Control& control, const Start& start) 
     control.say({"mesh", 1.0,
                  std::to_string(mesh.triangle_count()) + " triangles, " +
                      std::to_string(mesh.vertex_count()) + " vertices"});
+    result.assumptions = assumptions(scene, result.layout);
+    return {std::move(result), std::move(model), watch};
+}
 
-    Eigen::VectorXd from;
-    if (start.state != nullptr) {
-        from = start.resume ? resume_from(*start.state, scene, model.input(), start.path)
-                            : start_from(*start.state, model);
-    }
-    Control timed = control;
-    if (scene.solver.time_limit_s > 0.0) {
-        timed.deadline =
-            Control::Clock::now() + std::chrono::duration_cast<Control::Clock::duration>(
-                                        std::chrono::duration<double>(scene.solver.time_limit_s));
-    }
-    Release released =
-        release(scene, result.layout, std::move(model), timed, from.size() > 0 ? &from : nullptr);
+/// The result with a released shape in it.
+void take(Result& result, Release released, Stopwatch& watch) {
     result.equilibrium = std::move(released.equilibrium);
     result.warnings.insert(result.warnings.end(), released.warnings.begin(), released.warnings.end());
     result.seconds["release"] = watch.lap();
-
+    const TriangleMesh& mesh = result.layout.mesh;
     result.shape.reserve(mesh.vertices.size());
     for (int v = 0; v < mesh.vertex_count(); ++v)
         result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
     result.energy_density = released.model.energy_density(result.equilibrium.x);
-    result.self_intersections = find_self_intersections(result.shape, result.layout.mesh.triangles);
+    result.self_intersections = find_self_intersections(result.shape, mesh.triangles);
     result.equilibrium.health.self_intersections = static_cast<int>(result.self_intersections.size());
     if (!result.self_intersections.empty()) result.warnings.push_back(self_intersection_warning(result));
-    result.assumptions = assumptions(scene, result.layout);
     result.seconds["check"] = watch.lap();
-    return result;
+}
+
+Release first_release(const Result& result, Model model, const Control& control, const Start& start) {
+    Eigen::VectorXd from;
+    if (start.state != nullptr) {
+        from = start.resume ? resume_from(*start.state, result.scene, model.input(), start.path)
+                            : start_from(*start.state, model);
+    }
+    return release(result.scene, result.layout, std::move(model), control, from.size() > 0 ? &from : nullptr);
+}
+
+Model copy(const Model& model) { return Model(ModelInput(model.input())); }
+
+ShapeList list_of(const AlternativeSearch& search, const Equilibrium& ordinary) {
+    ShapeList list{.symmetries = search.symmetries,
+                   .starts = search.starts,
+                   .without_result = search.without_result,
+                   .interrupted = search.interrupted};
+    for (const Alternative& shape : search.shapes)
+        list.shapes.push_back({.number = static_cast<int>(list.shapes.size()) + 1,
+                               .energy = shape.equilibrium.energy.total(),
+                               .ordinary = shape.equilibrium.x == ordinary.x,
+                               .found_from = shape.found_from});
+    return list;
+}
+
+/// With the scene's own limit of time, from now on.
+Control limited(Control control, const Scene& scene) {
+    if (scene.solver.time_limit_s > 0.0) {
+        control.deadline =
+            Control::Clock::now() + std::chrono::duration_cast<Control::Clock::duration>(
+                                        std::chrono::duration<double>(scene.solver.time_limit_s));
+    }
+    return control;
+}
+
+}  // namespace
+
+std::vector<char> passes_through_itself(const Result& result) {
+    std::vector<char> marks(result.layout.mesh.triangles.size(), 0);
+    for (const Intersection& pair : result.self_intersections) {
+        for (const int t : pair.triangles) marks[static_cast<std::size_t>(t)] = 1;
+    }
+    return marks;
+}
+
+Result simulate(const Scene& scene, const Control& control, const Start& start) {
+    Prepared run = prepare(scene, control);
+    Release released = first_release(run.result, std::move(run.model), limited(control, scene), start);
+    take(run.result, std::move(released), run.watch);
+    return std::move(run.result);
+}
+
+ResultWithAlternatives simulate_alternatives(const Scene& scene, int wanted, const Control& control,
+                                             const Start& start) {
+    Prepared run = prepare(scene, control);
+    ResultWithAlternatives found{.ordinary = run.result, .shapes = {}};
+    const Control timed = limited(control, scene);
+    take(found.ordinary, first_release(run.result, copy(run.model), timed, start), run.watch);
+    const Equilibrium& ordinary = found.ordinary.equilibrium;
+    if (ordinary.status == SolveStatus::interrupted) return found;
+    const AlternativeSearch search =
+        find_alternatives(scene, run.result.layout, run.model, ordinary, wanted, timed);
+    found.ordinary.seconds["search"] = run.watch.lap();
+    found.ordinary.alternatives = list_of(search, ordinary);
+    for (const Alternative& shape : search.shapes) {
+        found.shapes.push_back(run.result);
+        take(found.shapes.back(), with_its_model(copy(run.model), shape.equilibrium), run.watch);
+    }
+    return found;
 }
 
 }  // namespace ruche

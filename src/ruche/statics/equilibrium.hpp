@@ -27,6 +27,9 @@ struct SolveOptions {
     /// Neither: where the shape leans on the linear extension of the fabric's law, go on with this narrower
     /// one (model.log_extension); 0 = keep the model's.
     double narrow_log_extension = 0.0;
+    /// Nor this: no step turns the sheet by more (root mean square, rad). A long step may leave the basin of
+    /// a minimum; a search for other shapes takes short ones.
+    double largest_turn = infinity;
 };
 
 template <>

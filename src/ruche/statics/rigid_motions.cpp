@@ -3,6 +3,8 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
+#include "ruche/core/error.hpp"
+
 namespace ruche {
 namespace {
 
@@ -131,6 +133,24 @@ void RigidMotions::hold(const NodePattern& pattern, const Eigen::VectorXd& x, Re
         for (int c = 0; c < 3; ++c) {
             for (int r = 0; r < 3; ++r)
                 hessian[at + c * length + r] += stiffness * gauge.direction[r] * gauge.direction[c];
+        }
+    }
+}
+
+void require_held(const Model& model) {
+    const ModelInput& input = model.input();
+    const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
+    if (gravity.norm() == 0.0 || input.table.present) return;
+    const MeshPieces pieces = find_pieces(input.mesh);
+    std::vector<char> held(pieces.count, 0);
+    for (const Support& support : input.supports) {
+        if (pieces.of_vertex[support.vertex] >= 0) held[pieces.of_vertex[support.vertex]] = 1;
+    }
+    for (const char h : held) {
+        if (!h) {
+            throw InputError(
+                {.key = "gravity"}, "a piece of the sheet would fall for ever: nothing holds it",
+                "Add a [[support]], put it on a table (gravity.table = true), or remove gravity.");
         }
     }
 }

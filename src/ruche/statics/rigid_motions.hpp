@@ -48,4 +48,7 @@ class RigidMotions {
     bool table_ = false;
 };
 
+/// Throws InputError for gravity that nothing holds some piece of the sheet against.
+void require_held(const Model& model);
+
 }  // namespace ruche
