@@ -2,7 +2,7 @@
 """What a release costs: scenes x sizes x threads, how it grows, and the laminate element against the tests' oracle.
 
 usage: bench/release_study.py [FILE.json] [--scenes strips,torus] [--sizes 5000,20000,80000,200000] [--threads 1,2]
-                              [--again]
+                              [--build build/release] [--again]
 
 Runs `ruche bench` for each row and writes FILE.json (default build/release_study.json) and the same as Markdown
 tables beside it, after every row: when it is stopped, the next start goes on where it was; --again begins anew. Let
@@ -94,9 +94,9 @@ def markdown(study):
     return "\n".join(parts)
 
 
-def measure(scene, size, threads):
+def measure(build, scene, size, threads):
     run = subprocess.run(
-        [ROOT / "build/release/ruche", "bench", "--json", "--scene", scene, "--triangles", str(size),
+        [build / "ruche", "bench", "--json", "--scene", scene, "--triangles", str(size),
          "--threads", str(threads)],
         capture_output=True, text=True)
     if run.returncode not in (0, 3):
@@ -104,9 +104,9 @@ def measure(scene, size, threads):
     return json.loads(run.stdout)
 
 
-def measure_element():
+def measure_element(build):
     out = subprocess.check_output(
-        [ROOT / "build/release/bench/ruche_bench", "--benchmark_filter=^laminate_element", "--benchmark_format=json"],
+        [build / "bench/ruche_bench", "--benchmark_filter=^laminate_element", "--benchmark_format=json"],
         text=True, stderr=subprocess.DEVNULL)
     entry = json.loads(out)["benchmarks"][0]
     if entry.get("error_occurred"):
@@ -124,6 +124,7 @@ def main():
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=SCENES)
     parser.add_argument("--sizes", type=numbers, default=[5000, 20000, 80000, 200000])
     parser.add_argument("--threads", type=numbers, default=[1, 2])
+    parser.add_argument("--build", type=Path, default=ROOT / "build/release")
     parser.add_argument("--again", action="store_true", help="forget the rows that the file has")
     arguments = parser.parse_args()
 
@@ -135,7 +136,7 @@ def main():
         arguments.file.write_text(json.dumps(study, indent=1) + "\n")
         arguments.file.with_suffix(".md").write_text(markdown(study))
 
-    study["element"] = measure_element()
+    study["element"] = measure_element(arguments.build)
     save()
     print(f"laminate element: {study['element']['times_faster']:.0f} times as fast as the oracle", flush=True)
     for size in arguments.sizes:  # small ones first: they tell soonest whether something is wrong
@@ -144,7 +145,7 @@ def main():
                 key = f"{scene} {size} {threads}"
                 if key in study["runs"]:
                     continue
-                result = study["runs"][key] = measure(scene, size, threads)
+                result = study["runs"][key] = measure(arguments.build, scene, size, threads)
                 save()
                 took = result.get("error") or f"{result['release_cpu_s']:.3g} s, certain: {certain(result)}"
                 print(f"{key}: {took}", flush=True)
