@@ -108,7 +108,7 @@ bool NewtonSystem::finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& st
 }
 
 bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::VectorXd& step) {
-    constexpr double near = 0.03;  // rad
+    constexpr double near = 0.003;  // rad: later steps are solved in a few iterations, earlier ones seldom
     if (factor_is_near_ && rotation < near && solve_with_last_factor(at, step)) return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded(at.model)) {
