@@ -103,7 +103,8 @@ TEST_CASE("fabsim: dihedral angles and their derivatives agree with its hinges i
             const std::array<int, 3> corners[2] = {{0, 1, 2}, {1, 0, 3}};
             Eigen::VectorXd slope = Eigen::VectorXd::Zero(12);
             for (int side = 0; side < 2; ++side) {
-                for (int i = 0; i < 3; ++i) slope.segment<3>(3 * corners[side][i]) += frames[side].gradient(i);
+                for (int i = 0; i < 3; ++i)
+                    slope.segment<3>(3 * corners[side][i]) += frames[side].gradient(i);
                 std::array<int, 3> vertices;
                 for (int i = 0; i < 3; ++i) vertices[i] = v[corners[side][i]];
                 frames[side].add_second_derivative(2.0 * k * theta, vertices, sums.hessian);

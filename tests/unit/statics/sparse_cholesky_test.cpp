@@ -17,7 +17,8 @@ using namespace ruche;
 namespace {
 
 /// A stiffness matrix as shells have them: `side`² vertices on a grid with three unknowns each, random
-/// symmetric blocks between neighbours (diagonals too), and on the diagonal `dominance` times the sum of a row, plus one.
+/// symmetric blocks between neighbours (diagonals too), and on the diagonal `dominance` times the sum of a
+/// row, plus one.
 Eigen::SparseMatrix<double> grid_matrix(int side, double dominance) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> entry(-1.0, 1.0);
