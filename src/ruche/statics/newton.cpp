@@ -94,9 +94,9 @@ bool Newton::line_search() {
     const double slope = sums_.gradient.dot(step_);
     const double before = residual();
     const ClearPath path = follow(step_, 1.0);
-    step_length_ = std::min(path.end(), largest_turn() / rotation_);
-    for (int halving = 0; halving < 30; ++halving, step_length_ *= 0.5) {
-        const double t = step_length_;
+    double t = std::min(path.end(), largest_turn() / rotation_);
+    halved_ = false;
+    for (int halving = 0; halving < 30; ++halving, t *= 0.5, halved_ = true) {
         const Eigen::VectorXd candidate = path.at(t);
         cover_contacts(candidate);
         if (!may_take(candidate)) continue;
@@ -244,7 +244,7 @@ bool Newton::step(Order order) {
     if (!solved) return false;
     rotation_ = retraction_.rms_rotation(x_, step_);
     const bool moved = line_search();
-    if (exact) system_.adapt(step_length_);
+    if (exact) system_.adapt(halved_);
     return moved;
 }
 

@@ -84,7 +84,7 @@ class Newton {
     AssembledSums sums_;
     AssembledSums trial_;
     EnergyTerms terms_;
-    double step_length_ = 1.0;    // of the last line search; 1 = Newton's step
+    bool halved_ = false;         // the last line search had to
     double rotation_ = infinity;  // rms of the last step
     int iterations_ = 0;
     bool wary_ = false;

@@ -63,8 +63,8 @@ bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
     }
 }
 
-void NewtonSystem::adapt(double length) {
-    if (length < 1.0) {
+void NewtonSystem::adapt(bool halved) {
+    if (halved) {
         share_ = std::clamp(share_factor * share_, 0.5 * first_share, 1.0);
     } else {
         share_ /= share_factor;

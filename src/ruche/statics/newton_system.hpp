@@ -48,9 +48,9 @@ class NewtonSystem {
     /// A direction in which the exact Hessian curves down most, by inverse iteration from `direction`.
     [[nodiscard]] bool steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& direction);
 
-    /// After a line search that went `length` of an exact step (1 = all of it): a step that was too long asks
-    /// for more of the Gauss-Newton form in the next matrix, one that was not for less.
-    void adapt(double length);
+    /// After the line search of an exact step: one that had to halve the step asks for more of the
+    /// Gauss-Newton form in the next matrix, one that had not for less.
+    void adapt(bool halved);
 
     /// The model's pattern is another one from now on.
     void change_pattern() { pattern_is_new_ = true; }
