@@ -78,6 +78,7 @@ void laminate_element(benchmark::State& state) {
     constexpr int batch = 64;
     std::mt19937 random(1);
     std::vector<std::vector<double>> states;
+    states.reserve(batch);
     for (int i = 0; i < batch; ++i) states.push_back(random_state(element, random));
     std::vector<double> own_seconds;
     std::vector<double> oracle_seconds;

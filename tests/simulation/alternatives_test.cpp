@@ -16,7 +16,7 @@ namespace {
 Scene wide_strip() {
     return parse_scene(
         "pattern.generator = \"strip\"\npattern.options = { length_mm = 60, width_mm = 5 }\n"
-        "fabric.margin_mm = 0\nplastic.thickness_mm = 0.3\n",
+        "fabric.margin_mm = 0\nplastic.thickness_mm = 0.25\n",
         "test.toml");
 }
 
@@ -26,7 +26,7 @@ bool certain(const Result& result) {
 
 }  // namespace
 
-TEST_CASE("alternatives: a wide thin strip also rolls across its width, 4 % higher") {
+TEST_CASE("alternatives: a wide thin strip also rolls across its width, 5.6 % higher") {
     const ResultWithAlternatives found = simulate_alternatives(wide_strip(), 2);
     REQUIRE(found.ordinary.alternatives.has_value());
     const ShapeList& list = *found.ordinary.alternatives;
@@ -41,8 +41,8 @@ TEST_CASE("alternatives: a wide thin strip also rolls across its width, 4 % high
         CHECK_FALSE(list.shapes[i].found_from.empty());
     }
     const double ratio = list.shapes[1].energy / list.shapes[0].energy;
-    CHECK(ratio > 1.035);
-    CHECK(ratio < 1.05);
+    CHECK(ratio > 1.05);
+    CHECK(ratio < 1.06);
     CHECK(list.shapes[0].ordinary);
     CHECK(found.shapes[0].shape == found.ordinary.shape);
     CHECK(align(found.shapes[0].shape, found.shapes[1].shape).rms > 1.0);

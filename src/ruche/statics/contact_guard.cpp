@@ -9,6 +9,7 @@ namespace ruche {
 
 bool passes_through_itself(const Model& model, const Eigen::VectorXd& x) {
     std::vector<Vec3> positions;
+    positions.reserve(model.vertex_count());
     for (int v = 0; v < model.vertex_count(); ++v) positions.emplace_back(x.segment<3>(3 * v));
     return !find_self_intersections(positions, model.input().mesh.triangles).empty();
 }
