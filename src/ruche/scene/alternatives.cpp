@@ -92,13 +92,14 @@ AlternativeSearch find_alternatives(const Scene& scene, const PrintMesh& layout,
     };
     const Starts starts(path.first_model(), scene, wanted);
     for (int i = 0; i < starts.count() && static_cast<int>(search.shapes.size()) < wanted; ++i) {
-        if (control.stopped()) break;
+        if (control.stopped() || control.timed_out()) break;
         control.say(
             {"search", static_cast<double>(i) / starts.count(),
              fmt::format("start {} of at most {}, {} shapes", i + 1, starts.count(), search.shapes.size())});
         const Start start = starts[i];
         ++search.starts;
-        Equilibrium end = solve(path.first_model(), search_options, {.stop = control.stop}, &start.x);
+        Equilibrium end = solve(path.first_model(), search_options,
+                                {.stop = control.stop, .deadline = control.deadline}, &start.x);
         if (!certain(end)) {
             ++search.without_result;
             continue;
@@ -111,7 +112,7 @@ AlternativeSearch find_alternatives(const Scene& scene, const PrintMesh& layout,
         }
         rough.add(end);
         fine_number.push_back(-1);
-        Equilibrium refined = path.from(std::move(end), {.stop = control.stop});
+        Equilibrium refined = path.from(std::move(end), {.stop = control.stop, .deadline = control.deadline});
         if (!certain(refined)) {
             ++search.without_result;
             continue;
