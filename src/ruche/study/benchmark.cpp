@@ -93,7 +93,8 @@ void measure_pieces(const Release& released, int threads, Benchmark& result) {
 BenchmarkOptions resolved(BenchmarkOptions options) {
     for (const BenchmarkSceneInfo& known : benchmark_scenes())
         if (known.name == options.scene && options.triangles == 0) options.triangles = known.triangles;
-    if (options.threads == 0) options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+    if (options.threads == 0)
+        options.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
     return options;
 }
 
