@@ -96,10 +96,13 @@ bool Newton::line_search() {
     const ClearPath path = follow(step_, 1.0);
     double t = std::min(path.end(), largest_turn() / rotation_);
     halved_ = false;
+    // A wary solve rather takes a shorter step than one into a tangle. Not at any price: tiny elements fold
+    // for a while and unfold again, and a wall there would hold up the whole sheet.
+    constexpr int wary_halvings = 4;
     for (int halving = 0; halving < 30; ++halving, t *= 0.5, halved_ = true) {
         const Eigen::VectorXd candidate = path.at(t);
         cover_contacts(candidate);
-        if (!may_take(candidate)) continue;
+        if (halving < wary_halvings && !may_take(candidate)) continue;
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
             const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
@@ -127,7 +130,7 @@ void Newton::relax_spots() {
     const Eigen::VectorXd from = x_;
     elimination_(model(), x_, trial_.gradient);
     // It knows neither of tangles nor of obstacles that are not near already.
-    if (!may_take(x_) || (contact_ && !contact_->clear(from, x_))) x_ = from;
+    if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) x_ = from;
     cover_contacts(x_);
 }
 

@@ -33,7 +33,7 @@ class Newton {
     /// The start that a shape on another mesh of the layout makes.
     Eigen::VectorXd carried_over(const LayoutShape& start) { return transfer(start, model(), retraction_); }
 
-    /// From now on no step leads into a tangle, and none turns the sheet far.
+    /// From now on no step turns the sheet far, and shorter ones are tried before one leads into a tangle.
     void be_wary() { wary_ = true; }
 
     /// The last state of all runs that is no tangle; empty when there was none.

@@ -6,7 +6,7 @@ namespace ruche {
 
 std::string tangle(const Health& health) {
     constexpr double beyond_law = 0.05;
-    constexpr double collapsed = 1e-3;
+    constexpr double collapsed = 1e-4;
     constexpr double folded_deg = 160.0;
     constexpr double turned_deg = 90.0;
     if (health.max_strain_margin > beyond_law)

@@ -14,7 +14,7 @@ struct Reruns {
 
     std::function<Equilibrium(const Eigen::VectorXd& start)> run;
     std::function<Eigen::VectorXd()> last_good;  ///< of all runs so far; empty when every state was tangled
-    std::function<void()> be_wary;               ///< runs from now on take small steps, none into a tangle
+    std::function<void()> be_wary;               ///< runs from now on take small steps, around tangles
     std::function<Eigen::VectorXd()> flat;       ///< the flat printed state with other noise
     bool rough = false;                          ///< a start for another solve is all that is wanted
 };

@@ -12,7 +12,7 @@ namespace {
 /// As crumpled as sheets on their default mesh have been seen.
 Health crumpled() {
     return {.max_strain_margin = 1e-3,
-            .min_area_ratio = 0.005,
+            .min_area_ratio = 0.0005,
             .max_dihedral_deg = 110.0,
             .max_edge_rotation_deg = 45.0,
             .self_intersections = 3};
@@ -63,8 +63,8 @@ TEST_CASE("tangle: a crumpled sheet is none, each limit on its own is one") {
     h.max_strain_margin = 0.06;
     CHECK(tangle(h).find("beyond the limit") != std::string::npos);
     h = crumpled();
-    h.min_area_ratio = 5e-4;
-    CHECK(tangle(h).find("crushed to 0.05 %") != std::string::npos);
+    h.min_area_ratio = 5e-5;
+    CHECK(tangle(h).find("crushed to 0.005 %") != std::string::npos);
     h = crumpled();
     h.max_dihedral_deg = 171.0;
     CHECK(tangle(h).find("171") != std::string::npos);
