@@ -175,6 +175,50 @@ def wait_for(process, text):
         seen += line
 
 
+def grid_of_a_wide_strip(path):
+    """30 x 5 mm on squares of 1 mm cut by alternating diagonals, 0.3 mm of plastic: rolls along or across."""
+    long, wide = 30, 5
+    points = [f"{i} {j}" for j in range(wide + 1) for i in range(long + 1)]
+    faces = []
+    for j in range(wide):
+        for i in range(long):
+            a, b, c, d = (j * (long + 1) + i + k for k in (0, 1, long + 1, long + 2))
+            cut = [(a, b, d), (a, d, c)] if (i + j) % 2 == 0 else [(a, b, c), (b, d, c)]
+            faces += ["3 {} {} {} 0.3".format(*face) for face in cut]
+    header = ["ply", "format ascii 1.0", f"element vertex {len(points)}", "property double x", "property double y",
+              f"element face {len(faces)}", "property list uchar int vertex_indices", "property double front_mm",
+              "end_header"]
+    path.write_text("\n".join(header + points + faces) + "\n")
+
+
+def test_alternatives_are_listed_and_each_has_a_folder(tmp_path):
+    grid_of_a_wide_strip(tmp_path / "strip.ply")
+    nothing_else = ["--set", "output.picture=false", "--set", "output.glb=false", "-o", "out"]
+    run = ruche("simulate", "strip.ply", "--alternatives", "2", *nothing_else, cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert re.search(r"^shapes     2 from \d+ further starts$", run.stdout, re.MULTILINE), run.stdout
+    out = tmp_path / "out"
+    shapes = report(out)["alternatives"]["shapes"]
+    assert [shape["folder"] for shape in shapes] == ["alternatives/1", "alternatives/2"]
+    assert [shape["ordinary"] for shape in shapes].count(True) == 1
+    assert 0.02 < shapes[1]["above_lowest"] < 0.06
+    assert shapes[1]["energy_mJ"] == pytest.approx(shapes[0]["energy_mJ"] * (1 + shapes[1]["above_lowest"]))
+    assert len(report(out)["alternatives"]["symmetries"]) == 3
+    for shape in shapes:
+        assert shape["found_from"]
+        alone = report(out / shape["folder"])
+        assert alone["status"] == "converged" and alone["stable"] is True
+        assert alone["energy_mJ"]["total"] == shape["energy_mJ"]
+        assert (out / shape["folder"] / "shape.ply").is_file()
+    # The lower and the higher one stay apart when a run begins from either.
+    again = ruche("simulate", "strip.ply", "--start", "out/alternatives/2", *nothing_else[:-1], "again", cwd=tmp_path)
+    assert again.returncode == 0
+    assert report(tmp_path / "again")["energy_mJ"]["total"] == pytest.approx(shapes[1]["energy_mJ"], rel=1e-9)
+    # A later result without alternatives leaves none behind.
+    assert ruche("simulate", "strip.ply", *nothing_else, cwd=tmp_path).returncode == 0
+    assert "alternatives" not in report(out) and not (out / "alternatives").exists()
+
+
 def test_an_interrupted_run_leaves_its_state_and_goes_on(folder):
     process = big_run(folder)
     wait_for(process, "release")

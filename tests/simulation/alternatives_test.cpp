@@ -1,10 +1,16 @@
 // A wide thin strip rolls along its length or across its width; both are stable, and both have to be found.
 #include <doctest/doctest.h>
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <atomic>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include "ruche/geometry/rigid_alignment.hpp"
+#include "ruche/meshing/structured.hpp"
 #include "ruche/output/metrics.hpp"
 #include "ruche/scene/read_scene.hpp"
 #include "ruche/scene/simulate.hpp"
@@ -13,6 +19,7 @@ using namespace ruche;
 
 namespace {
 
+/// 60 x 5 mm on the default mesh.
 Scene wide_strip() {
     return parse_scene(
         "pattern.generator = \"strip\"\npattern.options = { length_mm = 60, width_mm = 5 }\n"
@@ -20,14 +27,34 @@ Scene wide_strip() {
         "test.toml");
 }
 
+/// 60 x 5 mm on squares of 1 mm that are cut by alternating diagonals. On finer and on less regular meshes
+/// of so thick a strip the roll across the width is no minimum (theory page, "Other stable shapes").
+class WideStripOnGrid {
+  public:
+    WideStripOnGrid() {
+        const TriangleMesh mesh =
+            rectangle_mesh(MeshKind::alternating, {.length = 60.0, .width = 5.0, .across = 5});
+        std::ofstream ply(file_);
+        ply << "ply\nformat ascii 1.0\nelement vertex " << mesh.vertex_count()
+            << "\nproperty double x\nproperty double y\nelement face " << mesh.triangle_count()
+            << "\nproperty list uchar int vertex_indices\nproperty double front_mm\nend_header\n";
+        for (const Vec2& p : mesh.vertices) ply << fmt::format("{} {}\n", p.x(), p.y());
+        for (const Triangle& t : mesh.triangles) ply << fmt::format("3 {} {} {} 0.3\n", t[0], t[1], t[2]);
+    }
+    ~WideStripOnGrid() { std::filesystem::remove(file_); }
+    Scene scene() const { return parse_scene("pattern.mesh = \"" + file_.string() + "\"\n", "test.toml"); }
+
+  private:
+    std::filesystem::path file_ =
+        std::filesystem::temp_directory_path() / fmt::format("ruche-wide-strip-{}.ply", getpid());
+};
+
 bool certain(const Result& result) {
     return result.equilibrium.status == SolveStatus::converged && result.equilibrium.stable;
 }
 
-}  // namespace
-
-TEST_CASE("alternatives: a wide thin strip also rolls across its width, 5.6 % higher") {
-    const ResultWithAlternatives found = simulate_alternatives(wide_strip(), 2);
+void check_both_rolls(const Scene& scene, double least_ratio, double largest_ratio) {
+    const ResultWithAlternatives found = simulate_alternatives(scene, 2);
     REQUIRE(found.ordinary.alternatives.has_value());
     const ShapeList& list = *found.ordinary.alternatives;
     REQUIRE(found.shapes.size() == 2);
@@ -41,8 +68,8 @@ TEST_CASE("alternatives: a wide thin strip also rolls across its width, 5.6 % hi
         CHECK_FALSE(list.shapes[i].found_from.empty());
     }
     const double ratio = list.shapes[1].energy / list.shapes[0].energy;
-    CHECK(ratio > 1.05);
-    CHECK(ratio < 1.06);
+    CHECK(ratio > least_ratio);
+    CHECK(ratio < largest_ratio);
     CHECK(list.shapes[0].ordinary);
     CHECK(found.shapes[0].shape == found.ordinary.shape);
     CHECK(align(found.shapes[0].shape, found.shapes[1].shape).rms > 1.0);
@@ -51,6 +78,16 @@ TEST_CASE("alternatives: a wide thin strip also rolls across its width, 5.6 % hi
     CHECK(curvature(found.shapes[0]) > 0.3);
     CHECK(std::abs(curvature(found.shapes[1])) < 0.05);
     CHECK(list.symmetries.size() == 3);
+}
+
+}  // namespace
+
+TEST_CASE("alternatives: a wide thin strip also rolls across its width, 5.6 % higher") {
+    check_both_rolls(wide_strip(), 1.05, 1.06);
+}
+
+TEST_CASE("alternatives: a thicker one does so on a regular grid, 4.3 % higher") {
+    check_both_rolls(WideStripOnGrid().scene(), 1.04, 1.046);
 }
 
 TEST_CASE("alternatives: a stop keeps the ordinary shape and what was found before it") {
