@@ -15,6 +15,7 @@ namespace {
 struct BenchArguments {
     BenchmarkOptions options;
     bool json = false;
+    bool verbose = false;
 };
 }  // namespace
 
@@ -53,8 +54,12 @@ static void print_benchmark(const Benchmark& result) {
 static ExitCode bench(const BenchArguments& arguments) {
     watch_for_interrupts();
     ProgressDisplay display;
-    const Control control{.report = [&](const Progress& progress) { display.show(progress); },
-                          .stop = &interrupted()};
+    Control control{.report = [&](const Progress& progress) { display.show(progress); },
+                    .stop = &interrupted()};
+    if (arguments.verbose)
+        control.report = [](const Progress& progress) {
+            fmt::print(stderr, "{}: {}\n", progress.phase, progress.text);
+        };
     const Benchmark result = benchmark(arguments.options, control);
     display.clear();
     if (arguments.json)
@@ -81,6 +86,7 @@ void add_bench(CLI::App& program, Action& action) {
     verb->add_option("--threads", arguments->options.threads, "Threads of the release; 0 takes every core")
         ->check(CLI::Range(0, 1024))
         ->type_name("N");
+    verb->add_flag("--verbose", arguments->verbose, "Log every step on stderr");
     verb->add_flag("--json", arguments->json, "Print JSON instead of a table");
     verb->callback([arguments, &action] { action = [arguments] { return bench(*arguments); }; });
 }

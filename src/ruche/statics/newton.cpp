@@ -166,8 +166,10 @@ bool Newton::leave_saddle() {
 
 void Newton::report() const {
     control_.say({"release", -1.0,
-                  fmt::format("iteration {}: energy {:.6f} mJ, residual {:.1e} N", iterations_,
-                              terms_.total(), residual())});
+                  fmt::format("iteration {}: energy {:.6f} mJ, residual {:.1e} N, last turn {:.1e} rad, {} "
+                              "factorisations",
+                              iterations_, terms_.total(), residual(), rotation_,
+                              system_.factorizations())});
 }
 
 void Newton::announce() const {
