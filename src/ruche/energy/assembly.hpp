@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -35,6 +36,9 @@ class TermAssembly {
 
     const T& term() const { return term_; }
 
+    /// A term with the same nodes takes the place of this one.
+    void exchange(T term) { term_ = std::move(term); }
+
     NodePattern::Cliques cliques() const {
         NodePattern::Cliques result{.nodes = {}, .width = slots};
         result.nodes.reserve(static_cast<std::size_t>(term_.element_count()) * slots);
@@ -45,8 +49,9 @@ class TermAssembly {
         return result;
     }
 
-    void prepare(const NodePattern& pattern) {
-        pattern_ = &pattern;
+    void prepare(std::shared_ptr<const NodePattern> shared_pattern) {
+        pattern_ = std::move(shared_pattern);
+        const NodePattern& pattern = *pattern_;
         colour_blocks();
         list_elements_of_nodes();
         const int count = term_.element_count();
@@ -90,7 +95,8 @@ class TermAssembly {
             sums.gradient[local[i]] += own.gradient[i];
             if (!wants_hessian(order)) continue;
             for (int j = 0; j < unknowns_per_element; ++j) {
-                if (local[j] >= 0) sums.hessian(local[i], local[j]) += own.hessian(i, j);
+                if (local[j] >= 0)
+                    sums.hessian(local[i], local[j]) += own.hessian(std::max(i, j), std::min(i, j));
             }
         }
         return own.value;
@@ -195,33 +201,35 @@ class TermAssembly {
         return energy;
     }
 
+    /// `h`: its lower triangle. Rows of a block in the pattern belong to the node with the larger number.
     template <class Nodes, class Matrix>
     void scatter(int element, const Nodes& nodes, const Matrix& h, double* values) const {
         const int* offset = offsets_.data() + static_cast<std::size_t>(element) * pairs;
         for (int i = 0; i < slots; ++i) {
             for (int j = 0; j <= i; ++j, ++offset) {
                 if (*offset < 0) continue;
-                // Rows belong to the node with the larger number. A node that fills two slots of an element
-                // gets both off-diagonal blocks in its diagonal block.
-                const bool swap = nodes[i] < nodes[j];
-                const int row = swap ? j : i;
-                const int column = swap ? i : j;
                 double* out = values + *offset;
-                const int length = pattern_->column_length(nodes[column]);
-                const int r0 = local_start(row);
-                const int c0 = local_start(column);
-                const bool both = i != j && nodes[i] == nodes[j];
-                if (i < T::vertex_slots && !both) {
-                    // Two vertices, by far the most: loops of known length.
-                    for (int c = 0; c < 3; ++c, out += length) {
-                        for (int r = 0; r < 3; ++r) out[r] += h(r0 + r, c0 + c);
+                const int length = pattern_->column_length(std::min(nodes[i], nodes[j]));
+                const int r0 = local_start(i);
+                const int c0 = local_start(j);
+                if (i == j) {
+                    for (int c = 0; c < local_size(i); ++c, out += length) {
+                        for (int r = 0; r < local_size(i); ++r)
+                            out[r] += h(r0 + std::max(r, c), r0 + std::min(r, c));
                     }
-                    continue;
-                }
-                for (int c = 0; c < local_size(column); ++c, out += length) {
-                    for (int r = 0; r < local_size(row); ++r) {
-                        out[r] += h(r0 + r, c0 + c);
-                        if (both) out[r] += h(c0 + r, r0 + c);
+                } else if (nodes[i] > nodes[j]) {
+                    for (int c = 0; c < local_size(j); ++c, out += length) {
+                        for (int r = 0; r < local_size(i); ++r) out[r] += h(r0 + r, c0 + c);
+                    }
+                } else if (nodes[i] < nodes[j]) {
+                    for (int c = 0; c < local_size(i); ++c, out += length) {
+                        for (int r = 0; r < local_size(j); ++r) out[r] += h(r0 + c, c0 + r);
+                    }
+                } else {
+                    // A node that fills two slots gets both blocks in its diagonal block.
+                    for (int c = 0; c < local_size(j); ++c, out += length) {
+                        for (int r = 0; r < local_size(i); ++r)
+                            out[r] += h(r0 + r, c0 + c) + h(r0 + c, c0 + r);
                     }
                 }
             }
@@ -229,7 +237,7 @@ class TermAssembly {
     }
 
     T term_;
-    const NodePattern* pattern_ = nullptr;
+    std::shared_ptr<const NodePattern> pattern_;
     std::vector<std::vector<int>> colours_;
     std::vector<int> offsets_;
     std::vector<int> first_element_, elements_of_node_;  // by node, compressed

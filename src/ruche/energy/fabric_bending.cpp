@@ -30,7 +30,7 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
     if (!wants_hessian(order)) return local;
 
     const double curvature = k * sec2 * (1.0 + 3.0 * tangent * tangent);
-    local.hessian.noalias() = (curvature * theta) * theta.transpose();
+    add_lower_product<12>(curvature * theta, theta, local.hessian);
     if (order != Order::hessian) return local;
     left.add_second_derivative(slope, left_slot, local.hessian);
     right.add_second_derivative(slope, right_slot, local.hessian);

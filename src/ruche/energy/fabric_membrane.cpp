@@ -73,7 +73,8 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     const Mat3 tangent = clamp ? positive_part(response.tangent) : response.tangent;
     const Mat3 in_lengths = e.volume * (e.strain_of_lengths.transpose() * tangent * e.strain_of_lengths);
     const Eigen::Matrix<double, 3, 9> weighted = in_lengths * lengths;
-    local.hessian.noalias() = lengths.transpose() * weighted;
+    for (int i = 0; i < 3; ++i)
+        add_lower_product<9>(lengths.row(i).transpose(), weighted.row(i).transpose(), local.hessian);
     if (order == Order::hessian) add_edge_length_curvature(slopes, local.hessian);
     return local;
 }

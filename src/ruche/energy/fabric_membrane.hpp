@@ -34,6 +34,12 @@ class FabricMembrane {
     /// Green's strain (E11, E22, 2 E12) in fabric axes.
     Vec3 green_strain(int element, const Unknowns& x) const;
     const FabricLaw& law() const { return law_; }
+    /// The same elements with another law.
+    FabricMembrane with_law(const FabricLaw& law) const {
+        FabricMembrane other(*this);
+        other.law_ = law;
+        return other;
+    }
 
   private:
     struct Prepared {

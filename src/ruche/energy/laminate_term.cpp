@@ -143,18 +143,22 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     slopes.head<3>() = stress.head<3>() + c_lengths.transpose() * moment;
     slopes.tail<3>() = c_phi.cwiseProduct(moment);
 
-    // Transposed, so that products run down its long columns.
-    Eigen::Matrix<double, 21, 6> measures = Eigen::Matrix<double, 21, 6>::Zero();
-    measures.topLeftCorner<9, 3>() = edge_length_gradient(k.v).transpose();
+    // d(L, phi) by the element's own corners; beyond them phi_i depends on one flap and one edge unknown
+    // alone.
+    Eigen::Matrix<double, 9, 6> measures = Eigen::Matrix<double, 9, 6>::Zero();
+    measures.leftCols<3>() = edge_length_gradient(k.v).transpose();
+    Mat3 flap_slope = Mat3::Zero();  // column i: dphi_i by flap i
     for (int i = 0; i < 3; ++i) {
         if (!k.hinged[i]) continue;
-        for (int j = 0; j < 3; ++j) {
+        for (int j = 0; j < 3; ++j)
             measures.block<3, 1>(3 * own_slot[i][j], 3 + i) += 0.5 * k.own[i].gradient(j);
+        for (int j = 0; j < 2; ++j)
             measures.block<3, 1>(3 * flap_slot[i][j], 3 + i) += 0.5 * k.flap[i].gradient(j);
-        }
-        measures(18 + i, 3 + i) = e.y_to_xi[i];
+        flap_slope.col(i) = 0.5 * k.flap[i].gradient(2);
+        local.gradient.segment<3>(9 + 3 * i) = slopes[3 + i] * flap_slope.col(i);
+        local.gradient[18 + i] = slopes[3 + i] * e.y_to_xi[i];
     }
-    local.gradient = measures.lazyProduct(slopes);
+    local.gradient.head<9>() = measures.lazyProduct(slopes);
     if (!wants_hessian(order)) return local;
 
     FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
@@ -180,8 +184,22 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
             in_measures(3 + i, 3 + i) -= moment[i] * c[i];
         }
     }
-    const Eigen::Matrix<double, 21, 6> weighted = measures.lazyProduct(in_measures);
-    local.hessian = weighted.lazyProduct(measures.transpose());
+    const Eigen::Matrix<double, 9, 6> weighted = measures.lazyProduct(in_measures);
+    for (int m = 0; m < 6; ++m) add_lower_product<9>(weighted.col(m), measures.col(m), local.hessian);
+    for (int i = 0; i < 3; ++i) {
+        local.hessian.block<3, 9>(9 + 3 * i, 0) = flap_slope.col(i) * weighted.col(3 + i).transpose();
+        local.hessian.block<1, 9>(18 + i, 0) = e.y_to_xi[i] * weighted.col(3 + i).transpose();
+        for (int j = 0; j < 3; ++j) {
+            const double both = in_measures(3 + i, 3 + j);
+            if (j <= i) {
+                local.hessian.block<3, 3>(9 + 3 * i, 9 + 3 * j) =
+                    (both * flap_slope.col(i)) * flap_slope.col(j).transpose();
+                local.hessian(18 + i, 18 + j) = both * e.y_to_xi[i] * e.y_to_xi[j];
+            }
+            local.hessian.block<1, 3>(18 + i, 9 + 3 * j) =
+                (both * e.y_to_xi[i]) * flap_slope.col(j).transpose();
+        }
+    }
     if (order != Order::hessian) return local;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);

@@ -182,6 +182,12 @@ EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
 
 }  // namespace
 
+FabricLaw Model::Parts::law() const {
+    return {input.material,
+            {.log_extension = input.options.log_extension,
+             .tensor_shear = input.options.shear_strain == ShearStrain::tensor}};
+}
+
 void Model::Parts::build_elastic_terms() {
     const TriangleMesh& mesh = input.mesh;
     const Material& m = input.material;
@@ -206,13 +212,11 @@ void Model::Parts::build_elastic_terms() {
                              plies(input, input.print[t], layout_edges.transpose() * layout_edges,
                                    fabric_edges.transpose() * fabric_edges)});
     }
-    const FabricLaw law(m, {.log_extension = input.options.log_extension,
-                            .tensor_shear = input.options.shear_strain == ShearStrain::tensor});
     membrane =
-        std::make_unique<TermAssembly<FabricMembrane>>(FabricMembrane(law, m.fabric_thickness, membranes));
-    bending = std::make_unique<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
+        std::make_shared<TermAssembly<FabricMembrane>>(FabricMembrane(law(), m.fabric_thickness, membranes));
+    bending = std::make_shared<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
     laminate =
-        std::make_unique<TermAssembly<LaminateTerm>>(LaminateTerm(m.laminate_poissons_ratio, laminates));
+        std::make_shared<TermAssembly<LaminateTerm>>(LaminateTerm(m.laminate_poissons_ratio, laminates));
 }
 
 void Model::Parts::build_loads() {
@@ -244,7 +248,7 @@ void Model::Parts::build_loads() {
         for (double& k : stiffness) k *= input.table.stiffness_per_area;
     }
     const Vec3 up = gravity.norm() > 0.0 ? Vec3(-gravity.normalized()) : Vec3::UnitZ();
-    table = std::make_unique<TermAssembly<TableContact>>(
+    table = std::make_shared<TermAssembly<TableContact>>(
         TableContact({.up = up, .height = input.table.height}, std::move(stiffness)));
 }
 
@@ -252,19 +256,21 @@ void Model::Parts::build_contact(std::vector<ContactPair> pairs) {
     // Turns of a rolled sheet press on each other with 1e-3 to 1e-2 MPa; at half the distance it is 4.3 times
     // this pressure.
     constexpr double pressure = 0.01;  // MPa
-    contact = std::make_unique<TermAssembly<ContactBarrier>>(
+    contact = std::make_shared<TermAssembly<ContactBarrier>>(
         ContactBarrier(pressure * input.options.contact_distance, std::move(pairs)));
 }
 
 void Model::Parts::build_pattern() {
     const NodePattern::Cliques cliques[] = {membrane->cliques(), bending->cliques(), laminate->cliques(),
                                             contact->cliques()};
-    pattern = NodePattern(input.mesh.vertex_count(), static_cast<int>(edge_unknowns.size()), cliques);
-    membrane->prepare(pattern);
-    bending->prepare(pattern);
-    laminate->prepare(pattern);
-    table->prepare(pattern);
-    contact->prepare(pattern);
+    pattern = std::make_shared<NodePattern>(input.mesh.vertex_count(), static_cast<int>(edge_unknowns.size()),
+                                            cliques);
+    const auto prepare = [&]<class T>(std::shared_ptr<const TermAssembly<T>>& term) {
+        auto prepared = std::make_shared<TermAssembly<T>>(term->term());
+        prepared->prepare(pattern);
+        term = std::move(prepared);
+    };
+    prepare(membrane), prepare(bending), prepare(laminate), prepare(table), prepare(contact);
 }
 
 Model::Model(ModelInput input) : parts_(std::make_unique<Parts>()) {
@@ -282,11 +288,24 @@ Model::~Model() = default;
 Model::Model(Model&&) noexcept = default;
 Model& Model::operator=(Model&&) noexcept = default;
 
-int Model::size() const { return parts_->pattern.unknown_count(); }
+Model::Model(const Model& other) : parts_(std::make_unique<Parts>(*other.parts_)) {}
+
+Model Model::with_log_extension(double log_extension) const {
+    Model other(*this);
+    Parts& parts = *other.parts_;
+    parts.input.options.log_extension = log_extension;
+    check(parts.input);
+    auto membrane = std::make_shared<TermAssembly<FabricMembrane>>(*parts.membrane);
+    membrane->exchange(parts.membrane->term().with_law(parts.law()));
+    parts.membrane = std::move(membrane);
+    return other;
+}
+
+int Model::size() const { return parts_->pattern->unknown_count(); }
 int Model::vertex_count() const { return parts_->input.mesh.vertex_count(); }
 const ModelInput& Model::input() const { return parts_->input; }
 const MeshEdges& Model::edges() const { return parts_->edges; }
-const NodePattern& Model::pattern() const { return parts_->pattern; }
+const NodePattern& Model::pattern() const { return *parts_->pattern; }
 std::array<int, 4> Model::vertices_of_edge_unknown(int k) const { return parts_->edge_unknowns[k]; }
 
 void Model::set_contacts(std::vector<ContactPair> pairs) {
@@ -304,7 +323,7 @@ Eigen::VectorXd Model::initial() const {
 EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(size());
-    if (wants_hessian(order)) sums.hessian.assign(parts_->pattern.row_index().size(), 0.0);
+    if (wants_hessian(order)) sums.hessian.assign(parts_->pattern->row_index().size(), 0.0);
     EnergyTerms terms;
     terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
     terms.fabric_bending = parts_->bending->add(unknowns, order, sums);
@@ -331,7 +350,7 @@ Eigen::VectorXd Model::gradient(const Eigen::VectorXd& x) const {
 Eigen::SparseMatrix<double> Model::hessian(const Eigen::VectorXd& x) const {
     AssembledSums sums;
     evaluate(x, Order::hessian, sums);
-    return parts_->pattern.full_matrix(sums.hessian);
+    return parts_->pattern->full_matrix(sums.hessian);
 }
 
 std::vector<double> Model::energy_density(const Eigen::VectorXd& x) const {

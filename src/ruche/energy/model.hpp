@@ -99,8 +99,13 @@ class Model {
     /// meaning.
     explicit Model(ModelInput input);
     ~Model();
+    Model(const Model&);
     Model(Model&&) noexcept;
     Model& operator=(Model&&) noexcept;
+
+    /// The same sheet with another extension of its fabric's law; cheap. Throws InputError for one without
+    /// meaning.
+    Model with_log_extension(double log_extension) const;
 
     int size() const;
     int vertex_count() const;

@@ -20,12 +20,13 @@ struct Model::Parts {
     std::vector<int> bare;                          // triangle of each membrane element
     std::vector<int> printed;                       // triangle of each laminate element
     std::vector<std::array<int, 4>> edge_unknowns;  // vertices around each
-    NodePattern pattern;
-    std::unique_ptr<TermAssembly<FabricMembrane>> membrane;
-    std::unique_ptr<TermAssembly<FabricBending>> bending;
-    std::unique_ptr<TermAssembly<LaminateTerm>> laminate;
-    std::unique_ptr<TermAssembly<TableContact>> table;
-    std::unique_ptr<TermAssembly<ContactBarrier>> contact;
+    // Shared among models that differ in their law only.
+    std::shared_ptr<const NodePattern> pattern;
+    std::shared_ptr<const TermAssembly<FabricMembrane>> membrane;
+    std::shared_ptr<const TermAssembly<FabricBending>> bending;
+    std::shared_ptr<const TermAssembly<LaminateTerm>> laminate;
+    std::shared_ptr<const TermAssembly<TableContact>> table;
+    std::shared_ptr<const TermAssembly<ContactBarrier>> contact;
     Eigen::VectorXd dead_load;  // N, on positions: gravity and nodal forces
 
     Unknowns unknowns(const Eigen::VectorXd& x) const { return {x.data(), input.mesh.vertex_count()}; }
@@ -35,6 +36,7 @@ struct Model::Parts {
         visit(*membrane), visit(*bending), visit(*laminate), visit(*table), visit(*contact);
     }
 
+    FabricLaw law() const;
     void build_elastic_terms();
     void build_loads();
     void build_contact(std::vector<ContactPair> pairs);

@@ -8,8 +8,8 @@ namespace ruche {
 Model::Patch Model::patch(std::span<const int> nodes, std::span<const char> held) const {
     Patch patch;
     for (const int node : nodes) {
-        const int first = parts_->pattern.first_unknown(node);
-        for (int u = first; u < first + parts_->pattern.node_size(node); ++u) {
+        const int first = parts_->pattern->first_unknown(node);
+        for (int u = first; u < first + parts_->pattern->node_size(node); ++u) {
             if (held.empty() || !held[u]) patch.unknowns_.push_back(u);
         }
     }

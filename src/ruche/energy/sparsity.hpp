@@ -34,6 +34,11 @@ class NodePattern {
         return {row_nodes_.data() + row_start_[node], row_nodes_.data() + row_start_[node + 1]};
     }
 
+    /// The graph of the nodes itself in compressed columns: rows of all nodes one after the other, and where
+    /// each node's begin.
+    const std::vector<int>& row_nodes() const { return row_nodes_; }
+    const std::vector<int>& row_start() const { return row_start_; }
+
     /// Where the block (row node, column node) begins in the values; its entry (r, c) lies at + r + c *
     /// column_length.
     int block_offset(int row_node, int column_node) const;

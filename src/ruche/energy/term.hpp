@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <string_view>
@@ -15,13 +16,31 @@ enum class Order { value, gradient, hessian, gauss_newton };
 
 constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }
 
-/// Value, gradient and Hessian of one element; what was not asked for is zero.
+/// Value, gradient and Hessian of one element; what was not asked for is zero. Of the Hessian only the lower
+/// triangle (row >= column) counts, whatever stands above it.
 template <int Size>
 struct Local {
     double value = 0.0;
     Eigen::Matrix<double, Size, 1> gradient = Eigen::Matrix<double, Size, 1>::Zero();
     Eigen::Matrix<double, Size, Size> hessian = Eigen::Matrix<double, Size, Size>::Zero();
+
+    Eigen::Matrix<double, Size, Size> full_hessian() const {
+        return hessian.template selfadjointView<Eigen::Lower>();
+    }
 };
+
+/// Adds left right^T to the lower triangle of a matrix, by blocks of three: what falls above the diagonal in
+/// a diagonal block does not matter.
+template <int Size, class Matrix>
+void add_lower_product(const Eigen::Matrix<double, Size, 1>& left,
+                       const Eigen::Matrix<double, Size, 1>& right, Matrix& lower) {
+    static_assert(Size % 3 == 0);
+    for (int column = 0; column < Size; ++column) {
+        for (int row = column - column % 3; row < Size; row += 3) {
+            for (int c = 0; c < 3; ++c) lower(row + c, column) += left[row + c] * right[column];
+        }
+    }
+}
 
 /// The unknowns as elements see them. Node v < vertex_count is a vertex (three unknowns); node vertex_count +
 /// k is the k-th edge unknown (one).
@@ -48,18 +67,17 @@ concept Term = requires(const T& term, int element, const Unknowns& x, Order ord
     { term.evaluate(element, x, order) } -> std::same_as<Local<3 * T::vertex_slots + T::edge_slots>>;
 };
 
-/// Adds slope * d2 L_i, the exact second derivative of the squared edge lengths of a triangle, to the first
-/// nine rows and columns of a local Hessian.
+/// Adds slope * d2 L_i, the exact second derivative of the squared edge lengths of a triangle, to the lower
+/// triangle of the first nine rows and columns of a local Hessian.
 template <class Matrix>
 void add_edge_length_curvature(const Vec3& slopes, Matrix& hessian) {
     for (int i = 0; i < 3; ++i) {
-        const int p = 3 * ((i + 1) % 3);
-        const int q = 3 * ((i + 2) % 3);
+        const int p = 3 * std::max((i + 1) % 3, (i + 2) % 3);
+        const int q = 3 * std::min((i + 1) % 3, (i + 2) % 3);
         for (int c = 0; c < 3; ++c) {
             hessian(p + c, p + c) += 2.0 * slopes[i];
             hessian(q + c, q + c) += 2.0 * slopes[i];
             hessian(p + c, q + c) -= 2.0 * slopes[i];
-            hessian(q + c, p + c) -= 2.0 * slopes[i];
         }
     }
 }

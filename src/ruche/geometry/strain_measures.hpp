@@ -39,8 +39,8 @@ struct DihedralFrame {
 
     Vec3 gradient(int i) const { return (q[i] / h) * n; }
 
-    /// Adds `weight` times the second derivative to a symmetric matrix in which corner i has the three rows
-    /// and columns from 3 slot[i] on.
+    /// Adds `weight` times the second derivative to the lower triangle of a matrix in which corner i has the
+    /// three rows and columns from 3 slot[i] on.
     template <class Matrix>
     void add_second_derivative(double weight, const std::array<int, 3>& slot, Matrix& hessian) const {
         const Mat3 un = -weight * (u * n.transpose() + n * u.transpose());
@@ -50,8 +50,11 @@ struct DihedralFrame {
             for (int j = 0; j <= i; ++j) {
                 const double sym = q[i] * q[j] / (h * h) + 0.5 * r[i] * r[j];
                 const Mat3 block = sym * un + (q[i] * r[j] / h) * en + (r[i] * q[j] / h) * ne;
-                hessian.template block<3, 3>(3 * slot[i], 3 * slot[j]) += block;
-                if (j < i) hessian.template block<3, 3>(3 * slot[j], 3 * slot[i]) += block.transpose();
+                if (slot[i] >= slot[j]) {
+                    hessian.template block<3, 3>(3 * slot[i], 3 * slot[j]) += block;
+                } else {
+                    hessian.template block<3, 3>(3 * slot[j], 3 * slot[i]) += block.transpose();
+                }
             }
         }
     }

@@ -21,7 +21,7 @@ Equilibrium after(const Equilibrium& first, Equilibrium next) {
 
 SolveOptions as_a_start(const Scene& scene) {
     SolveOptions options = scene.solver;
-    options.enough_rotation = 0.01;
+    options.enough_rotation = 0.02;
     options.max_iterations = 60;
     return options;
 }
@@ -149,9 +149,7 @@ Equilibrium ReleasePath::lay_on_table(Equilibrium free, const Control& control) 
 Release with_its_model(Model model, Equilibrium end) {
     std::vector<std::string> warnings;
     if (end.log_extension != model.input().options.log_extension) {
-        ModelInput narrowed = model.input();
-        narrowed.options.log_extension = end.log_extension;
-        model = Model(std::move(narrowed));
+        model = model.with_log_extension(end.log_extension);
         warnings.push_back(
             fmt::format("the fabric is stretched into the limit of its law somewhere; the log extension was "
                         "narrowed to {}",

@@ -5,12 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <utility>
 
 #include "ruche/core/memory.hpp"
 #include "ruche/statics/starts.hpp"
 #include "ruche/statics/tangle.hpp"
 
 namespace ruche {
+
+/// Largest component of the gradient, N.
+static double largest(const AssembledSums& sums) { return sums.gradient.cwiseAbs().maxCoeff(); }
 
 static std::vector<char> held_unknowns(const Model& model) {
     std::vector<char> held(model.size(), 0);
@@ -65,11 +69,7 @@ bool Newton::narrow_extension() {
         model().elements_beyond_law(x_) == 0) {
         return false;
     }
-    ModelInput input = model().input();
-    input.options.log_extension = narrow;
-    std::vector<ContactPair> contacts = model().contacts();
-    own_.emplace(std::move(input));
-    if (contact_) own_->set_contacts(std::move(contacts));
+    own_.emplace(model().with_log_extension(narrow));
     return true;
 }
 
@@ -89,6 +89,7 @@ void Newton::cover_contacts(const Eigen::VectorXd& x) {
 }
 
 /// Armijo's rule along the retraction; false when no step of reasonable length lowers energy or residual.
+/// `trial_` then has the gradient where it ended.
 bool Newton::line_search() {
     const double energy = terms_.total();
     const double slope = sums_.gradient.dot(step_);
@@ -100,38 +101,48 @@ bool Newton::line_search() {
     // for a while and unfold again, and a wall there would hold up the whole sheet.
     constexpr int wary_halvings = 4;
     for (int halving = 0; halving < 30; ++halving, t *= 0.5, halved_ = true) {
-        const Eigen::VectorXd candidate = path.at(t);
+        Eigen::VectorXd candidate = path.at(t);
         cover_contacts(candidate);
         if (halving < wary_halvings && !may_take(candidate)) continue;
+        // The first candidate is taken nearly always, and what comes after a step wants the gradient.
+        const bool with_gradient = halving == 0 || std::abs(slope) < 1e-9 * energy_scale();
+        double trial =
+            with_gradient ? evaluate(candidate, Order::gradient, trial_).total() : model().energy(candidate);
+        const auto is_lower = [&] { return std::isfinite(trial) && trial <= energy + 1e-4 * t * slope; };
+        bool lower = is_lower();
         if (std::abs(slope) < 1e-9 * energy_scale()) {
             // Energy differences drown in rounding: judge by the gradient.
-            const EnergyTerms terms = evaluate(candidate, Order::gradient, trial_);
-            if (std::isfinite(terms.total()) && trial_.gradient.cwiseAbs().maxCoeff() < before) {
-                x_ = candidate;
-                return true;
-            }
-            if (std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
+            lower |= std::isfinite(trial) && largest(trial_) < before;
+            if (!lower && std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
         }
-        const double trial = model().energy(candidate);
-        if (std::isfinite(trial) && trial <= energy + 1e-4 * t * slope) {
+        if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
+            // A few spots that it has thrown far off must not shorten the step of the whole sheet.
+            elimination_(model(), candidate, trial_.gradient, before);
+            trial = evaluate(candidate, Order::gradient, trial_).total();
+            lower = is_lower() && may_take(candidate);
+        }
+        if (lower) {
             x_ = candidate;
+            if (!with_gradient) evaluate(x_, Order::gradient, trial_);
             return true;
         }
     }
     return false;
 }
 
-/// Nonlinear elimination after a step, unless Newton's method converges well without it.
+/// Nonlinear elimination after a step, unless Newton's method converges well without it. `trial_` has the
+/// gradient.
 void Newton::relax_spots() {
     constexpr double converging = 0.01;
-    const double before = residual();
-    evaluate(x_, Order::gradient, trial_);
-    if (!(trial_.gradient.cwiseAbs().maxCoeff() > converging * before)) return;
-    const Eigen::VectorXd from = x_;
-    elimination_(model(), x_, trial_.gradient);
-    // It knows neither of tangles nor of obstacles that are not near already.
-    if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) x_ = from;
-    cover_contacts(x_);
+    constexpr int most_sweeps = 2;
+    for (int sweep = 0; sweep < most_sweeps && largest(trial_) > converging * residual(); ++sweep) {
+        if (sweep > 0) evaluate(x_, Order::gradient, trial_);
+        const Eigen::VectorXd from = x_;
+        elimination_(model(), x_, trial_.gradient);
+        // It knows neither of tangles nor of obstacles that are not near already.
+        if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) x_ = from;
+        cover_contacts(x_);
+    }
 }
 
 /// At a stationary point whose exact Hessian is indefinite: moves to lower energy along the direction of most
@@ -168,8 +179,7 @@ void Newton::report() const {
     control_.say({"release", -1.0,
                   fmt::format("iteration {}: energy {:.6f} mJ, residual {:.1e} N, last turn {:.1e} rad, {} "
                               "factorisations",
-                              iterations_, terms_.total(), residual(), rotation_,
-                              system_.factorizations())});
+                              iterations_, terms_.total(), residual(), rotation_, system_.factorizations())});
 }
 
 void Newton::announce() const {
@@ -196,6 +206,21 @@ std::string Newton::missing_memory() const {
     return fmt::format(
         "not enough memory for this mesh: the factorisation needs {:.0f} MB more, {:.0f} MB are available",
         needed, std::max(0.0, available));
+}
+
+Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
+    Eigen::VectorXd x = transfer(start, model(), retraction_);
+    // Where the old mesh was too coarse, at corners of strips, small elements come out crushed or folded
+    // over.
+    constexpr int most_sweeps = 10;
+    constexpr double worth = 0.99;
+    double energy = infinity;
+    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        const double before = std::exchange(energy, evaluate(x, Order::gradient, trial_).total());
+        if (!std::isfinite(energy) || energy > worth * before) break;
+        elimination_(model(), x, trial_.gradient);
+    }
+    return x;
 }
 
 Equilibrium Newton::run(const Eigen::VectorXd& start) {

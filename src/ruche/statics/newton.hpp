@@ -31,7 +31,7 @@ class Newton {
     Equilibrium run(const Eigen::VectorXd& start);
 
     /// The start that a shape on another mesh of the layout makes.
-    Eigen::VectorXd carried_over(const LayoutShape& start) { return transfer(start, model(), retraction_); }
+    Eigen::VectorXd carried_over(const LayoutShape& start);
 
     /// From now on no step turns the sheet far, and shorter ones are tried before one leads into a tangle.
     void be_wary() { wary_ = true; }

@@ -11,16 +11,11 @@ namespace {
 constexpr double first_share = 0.1;
 constexpr double share_factor = 4.0;  // by which the share grows and falls
 
-SparseCholesky analysed(const Model& model, const std::vector<int>& vertex_order) {
-    const SymmetricPattern pattern{model.size(), model.pattern().column_start(), model.pattern().row_index()};
-    return {pattern, elimination_order(model, vertex_order)};
-}
-
 }  // namespace
 
 NewtonSystem::NewtonSystem(const Model& model, const std::vector<char>& held,
                            const std::vector<int>& vertex_order)
-    : held_(held), rigid_(model), cholesky_(analysed(model, vertex_order)) {}
+    : held_(held), rigid_(model), cholesky_(model, vertex_order) {}
 
 void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift) {
     const NodePattern& pattern = at.model.pattern();
@@ -42,7 +37,7 @@ void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift
 
 bool NewtonSystem::factorize(const NewtonPoint& at, Order order, double shift) {
     build_matrix(at, order, shift);
-    if (pattern_is_new_) cholesky_ = analysed(at.model, vertex_elimination_order(at.model.pattern()));
+    if (pattern_is_new_) cholesky_ = SparseCholesky(at.model, vertex_elimination_order(at.model.pattern()));
     pattern_is_new_ = false;
     ++factorizations_;
     const bool definite = cholesky_.factorize(matrix_);
@@ -55,6 +50,9 @@ bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
     at.model.evaluate(at.x, Order::gauss_newton, gauss_newton_);
     mean_.gradient = at.sums.gradient;
     mean_.hessian.resize(at.sums.hessian.size());
+    // A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom
+    // enough.
+    if (share_ == 0.0 && after_gauss_newton_) share_ = 1.0;
     for (share_ = std::max(share_, first_share);; share_ = std::min(1.0, share_factor * share_)) {
         for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
             mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
@@ -67,9 +65,10 @@ void NewtonSystem::adapt(bool halved) {
     if (halved) {
         share_ = std::clamp(share_factor * share_, 0.5 * first_share, 1.0);
     } else {
-        share_ /= share_factor;
+        share_ = after_gauss_newton_ ? 0.0 : share_ / share_factor;
         if (share_ < 0.3 * first_share) share_ = 0.0;
     }
+    after_gauss_newton_ = false;
 }
 
 /// The exact step to a part in a thousand. False when that would take long or the Hessian is not positive
@@ -124,6 +123,7 @@ bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::Vec
 
 bool NewtonSystem::gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step) {
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
+    after_gauss_newton_ = true;
     bool ready = factorize(at, Order::gauss_newton);
     for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
         ready = factorize(at, Order::gauss_newton, shift);

@@ -74,10 +74,11 @@ class NewtonSystem {
     std::vector<double> matrix_;
     AssembledSums gauss_newton_;
     AssembledSums mean_;
-    bool pattern_is_new_ = false;  // since the last factorisation
-    bool factor_is_near_ = false;  // the last factor is of an exact Hessian
-    double shift_ = 0.0;           // of the last indefinite Hessian, N/mm
-    double share_ = 0.0;           // of the Gauss-Newton form in the matrix
+    bool after_gauss_newton_ = false;  // the last step was, and no exact one has been taken since
+    bool pattern_is_new_ = false;      // since the last factorisation
+    bool factor_is_near_ = false;      // the last factor is of an exact Hessian
+    double shift_ = 0.0;               // of the last indefinite Hessian, N/mm
+    double share_ = 0.0;               // of the Gauss-Newton form in the matrix
     int factorizations_ = 0;
 };
 

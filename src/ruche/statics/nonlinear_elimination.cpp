@@ -76,17 +76,17 @@ NonlinearElimination::NonlinearElimination(const Model& model, const std::vector
     }
 }
 
-/// Nodes of each spot: vertices under much force and the edge unknowns at them, joined where an element
-/// touches both.
+/// Nodes of each spot: vertices under a large part of the largest force or under `much`, and the edge
+/// unknowns at them, joined where an element touches both.
 std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pattern,
-                                                          const Eigen::VectorXd& gradient) {
+                                                          const Eigen::VectorXd& gradient, double much) {
     const int vertices = pattern.vertex_count();
     for (int v = 0; v < vertices; ++v) force_[v] = gradient.segment<3>(3 * v).norm();
     std::vector<double> sorted = force_;
     const auto quantile = sorted.begin() + static_cast<std::ptrdiff_t>((1.0 - most_vertices) * vertices);
     std::nth_element(sorted.begin(), quantile, sorted.end());
     const double largest = *std::max_element(quantile, sorted.end());
-    const double limit = std::max(concentrated * largest, *quantile);
+    const double limit = std::max(std::min(concentrated * largest, much), *quantile);
 
     std::fill(parent_.begin(), parent_.end(), -1);
     for (int v = 0; v < vertices; ++v) {
@@ -115,9 +115,9 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pat
     return found;
 }
 
-bool NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x,
-                                      const Eigen::VectorXd& gradient) {
-    const std::vector<std::vector<int>> all = spots(model.pattern(), gradient);
+bool NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+                                      double much) {
+    const std::vector<std::vector<int>> all = spots(model.pattern(), gradient, much);
     std::atomic<bool> moved = false;
     // No element touches two spots: they do not see each other move.
     parallel_for(all.size(), [&](std::size_t i) {

@@ -17,12 +17,15 @@ class NonlinearElimination {
     /// `held`: one flag per unknown that a support fixes; must outlive this.
     NonlinearElimination(const Model& model, const std::vector<char>& held);
 
-    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot. `model` is the
-    /// one given to the constructor or differs from it in the material only.
-    bool operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient);
+    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot. A spot is where
+    /// the force is a good part of the largest one, or more than `much` (N). `model` is the one given to the
+    /// constructor or differs from it in the material only.
+    bool operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
+                    double much = infinity);
 
   private:
-    std::vector<std::vector<int>> spots(const NodePattern& pattern, const Eigen::VectorXd& gradient);
+    std::vector<std::vector<int>> spots(const NodePattern& pattern, const Eigen::VectorXd& gradient,
+                                        double much);
 
     const std::vector<char>& held_;
     std::vector<std::vector<int>> edge_unknowns_of_vertex_;  // nodes

@@ -35,10 +35,45 @@ void prepare_blas() {
     buffers = thread_count();
 }
 
+/// Elimination order of a model's nodes.
+std::vector<int> node_order(const Model& model, std::span<const int> vertex_order) {
+    const int vertices = model.vertex_count();
+    std::vector<int> rank(vertices);
+    for (int k = 0; k < vertices; ++k) rank[vertex_order[k]] = k;
+    std::vector<std::vector<int>> before(vertices);  // edge unknowns
+    for (int node = vertices; node < model.pattern().node_count(); ++node) {
+        const std::array<int, 4> around = model.vertices_of_edge_unknown(node - vertices);
+        const int first =
+            *std::min_element(around.begin(), around.end(), [&](int a, int b) { return rank[a] < rank[b]; });
+        before[first].push_back(node);
+    }
+    std::vector<int> order;
+    order.reserve(model.pattern().node_count());
+    for (const int v : vertex_order) {
+        order.insert(order.end(), before[v].begin(), before[v].end());
+        order.push_back(v);
+    }
+    return order;
+}
+
+SupernodalStructure structure_of(const Model& model, std::span<const int> vertex_order) {
+    const NodePattern& pattern = model.pattern();
+    std::vector<int> sizes(pattern.node_count());
+    for (int node = 0; node < pattern.node_count(); ++node) sizes[node] = pattern.node_size(node);
+    return analyse({{pattern.node_count(), pattern.row_start(), pattern.row_nodes()}, sizes},
+                   node_order(model, vertex_order));
+}
+
 }  // namespace
 
 SparseCholesky::SparseCholesky(const SymmetricPattern& pattern, std::vector<int> elimination_order)
-    : factor_(analyse(pattern, std::move(elimination_order)), pattern) {
+    : factor_(analyse({pattern, std::vector<int>(pattern.size, 1)}, std::move(elimination_order)), pattern) {
+    prepare_blas();
+}
+
+SparseCholesky::SparseCholesky(const Model& model, std::span<const int> vertex_order)
+    : factor_(structure_of(model, vertex_order),
+              {model.size(), model.pattern().column_start(), model.pattern().row_index()}) {
     prepare_blas();
 }
 
@@ -81,27 +116,6 @@ std::vector<int> vertex_elimination_order(const NodePattern& pattern) {
     for_each_pair(
         [&](int row, int column) { neighbours[next[row]++] = column, neighbours[next[column]++] = row; });
     return nested_dissection(start, neighbours);
-}
-
-std::vector<int> elimination_order(const Model& model, std::span<const int> vertex_order) {
-    const NodePattern& pattern = model.pattern();
-    const int vertices = pattern.vertex_count();
-    std::vector<int> rank(vertices);
-    for (int k = 0; k < vertices; ++k) rank[vertex_order[k]] = k;
-    std::vector<std::vector<int>> unknowns_before(vertices);
-    for (int k = 0; k < pattern.node_count() - vertices; ++k) {
-        const std::array<int, 4> around = model.vertices_of_edge_unknown(k);
-        const int first =
-            *std::min_element(around.begin(), around.end(), [&](int a, int b) { return rank[a] < rank[b]; });
-        unknowns_before[first].push_back(pattern.first_unknown(vertices + k));
-    }
-    std::vector<int> order;
-    order.reserve(pattern.unknown_count());
-    for (const int v : vertex_order) {
-        order.insert(order.end(), unknowns_before[v].begin(), unknowns_before[v].end());
-        for (int c = 0; c < 3; ++c) order.push_back(3 * v + c);
-    }
-    return order;
 }
 
 }  // namespace ruche

@@ -16,6 +16,10 @@ class SparseCholesky {
     /// `elimination_order[k]` is the unknown that is eliminated k-th. Throws std::bad_alloc.
     SparseCholesky(const SymmetricPattern& pattern, std::vector<int> elimination_order);
 
+    /// For a model's Hessian. Vertices are eliminated in the given order, and each edge unknown right before
+    /// the first of its four vertices, where it causes no fill of its own. Throws std::bad_alloc.
+    SparseCholesky(const Model& model, std::span<const int> vertex_order);
+
     /// False when the matrix is not positive definite (or not finite). Throws std::bad_alloc.
     [[nodiscard]] bool factorize(std::span<const double> values) { return factor_.factorize(values); }
 
@@ -39,9 +43,5 @@ std::vector<int> nested_dissection(std::span<const int> start, std::span<const i
 
 /// Elimination order of the vertices: nested dissection of the pattern's vertex graph.
 std::vector<int> vertex_elimination_order(const NodePattern& pattern);
-
-/// Elimination order of a model's unknowns: that of the vertices, and each edge unknown right before the
-/// first of its four vertices, where it causes no fill of its own.
-std::vector<int> elimination_order(const Model& model, std::span<const int> vertex_order);
 
 }  // namespace ruche

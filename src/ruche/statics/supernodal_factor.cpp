@@ -86,11 +86,17 @@ void SupernodalFactor::list_entries(const SymmetricPattern& pattern) {
     std::partial_sum(first_entry_.begin(), first_entry_.end(), first_entry_.begin());
     entries_.resize(first_entry_.back());
     std::vector<std::size_t> next(first_entry_.begin(), first_entry_.end() - 1);
+    int at = 0;
     for_each_entry([&](int source, int row, int column) {
         const int s = supernode_of_column_[column];
         const int* rows = structure_.panel_row(s);
         const int stride = structure_.panel_rows(s);
-        const auto at = static_cast<int>(std::lower_bound(rows, rows + stride, row) - rows);
+        // Entries of a block come one after the other: most are found where the last one was, or below it.
+        const auto is_at = [&](int i) { return i < stride && rows[i] == row; };
+        if (!is_at(at)) {
+            const bool below = is_at(at + 1);
+            at = below ? at + 1 : static_cast<int>(std::lower_bound(rows, rows + stride, row) - rows);
+        }
         entries_[next[s]++] = {source, at + (column - structure_.first_column[s]) * stride};
     });
 }

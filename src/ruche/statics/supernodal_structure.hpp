@@ -14,6 +14,13 @@ struct SymmetricPattern {
     std::span<const int> row_index;
 };
 
+/// A symmetric matrix made of dense blocks between nodes. The unknowns of a node follow those of the node
+/// before.
+struct NodeGraph {
+    SymmetricPattern nodes;      ///< between which nodes there are blocks
+    std::span<const int> sizes;  ///< unknowns of each node
+};
+
 /// The structure of a Cholesky factor whose columns are gathered in supernodes, groups of columns with the
 /// same rows. Supernode s has the columns [first_column[s], first_column[s + 1]) and the rows
 /// rows[row_start[s]] ..< rows[row_start[s + 1]], ascending, its own columns first; its values are a dense
@@ -34,8 +41,9 @@ struct SupernodalStructure {
     std::size_t value_count() const { return panel_start.back(); }
 };
 
-/// Symbolic analysis (CHOLMOD): the structure of the factor when `elimination_order[k]` is eliminated k-th,
-/// up to exchanges that leave the fill as it is. Throws std::bad_alloc.
-SupernodalStructure analyse(const SymmetricPattern& pattern, std::vector<int> elimination_order);
+/// Symbolic analysis (CHOLMOD, of the graph of the nodes): the structure of the factor when node
+/// `elimination_order[k]` is eliminated k-th, up to exchanges that leave the fill as it is. Throws
+/// std::bad_alloc.
+SupernodalStructure analyse(const NodeGraph& graph, std::vector<int> elimination_order);
 
 }  // namespace ruche

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -88,14 +89,35 @@ class Source {
 
 Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& retraction) {
     const TriangleMesh& old = from.layout;
-    std::vector<Polar> polar(old.triangles.size());
+    // Means over the triangles around each vertex: constants per triangle would leave jumps at the old edges,
+    // which crush small elements. Stretches of plastic and of fabric are means of their own.
     std::vector<Mat3> sums(old.vertices.size(), Mat3::Zero());
-    for (int t = 0; t < old.triangle_count(); ++t) {
-        polar[t] = polar_decomposition(edges(old, from.x, t) * layout_edges(old, t).inverse());
-        const bool plastic = !from.print.empty() && !from.print[t].bare();
-        const double weight = (plastic ? 100.0 : 1.0) * layout_area(old, t);
-        for (const int v : old.triangles[t]) sums[v] += weight * polar[t].rotation;
+    std::array<std::vector<Mat2>, 2> stretches;
+    std::array<std::vector<double>, 2> areas;
+    for (const int kind : {0, 1}) {
+        stretches[kind].assign(old.vertices.size(), Mat2::Zero());
+        areas[kind].assign(old.vertices.size(), 0.0);
     }
+    const auto is_plastic = [&](int t) { return !from.print.empty() && !from.print[t].bare(); };
+    for (int t = 0; t < old.triangle_count(); ++t) {
+        const Polar polar = polar_decomposition(edges(old, from.x, t) * layout_edges(old, t).inverse());
+        const bool plastic = is_plastic(t);
+        const double area = layout_area(old, t);
+        for (const int v : old.triangles[t]) {
+            sums[v] += (plastic ? 100.0 : 1.0) * area * polar.rotation;
+            stretches[plastic][v] += area * polar.stretch;
+            areas[plastic][v] += area;
+        }
+    }
+    const auto mean_stretch = [&](const MeshPoint& point) {
+        const bool plastic = is_plastic(point.triangle);
+        Mat2 mean = Mat2::Zero();
+        for (int i = 0; i < 3; ++i) {
+            const int v = old.triangles[point.triangle][i];
+            mean += point.weights[i] / areas[plastic][v] * stretches[plastic][v];
+        }
+        return mean;
+    };
     std::vector<Mat3> rotations(sums.size());
     for (std::size_t v = 0; v < sums.size(); ++v) rotations[v] = nearest_rotation(sums[v]);
 
@@ -114,7 +136,7 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
             for (int i = 0; i < 3; ++i)
                 blend += point.weights[i] * rotations[old.triangles[point.triangle][i]];
             const Mat3 rotation = nearest_rotation(blend);
-            wanted[t] = rotation.leftCols<2>() * polar[point.triangle].stretch * layout_edges(mesh, t);
+            wanted[t] = rotation.leftCols<2>() * mean_stretch(point) * layout_edges(mesh, t);
         }
     });
     // A first guess in the right place; its own edges do not matter.

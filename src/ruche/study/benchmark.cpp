@@ -77,11 +77,9 @@ StepSeconds step_seconds(const Model& model, const Eigen::VectorXd& x, SparseCho
 void measure_pieces(const Release& released, int threads, Benchmark& result) {
     const Model& model = released.model;
     std::vector<int> order;
-    result.ordering_seconds =
-        once([&] { order = elimination_order(model, vertex_elimination_order(model.pattern())); });
+    result.ordering_seconds = once([&] { order = vertex_elimination_order(model.pattern()); });
     std::optional<SparseCholesky> cholesky;
-    const SymmetricPattern pattern{model.size(), model.pattern().column_start(), model.pattern().row_index()};
-    result.analysis_seconds = once([&] { cholesky.emplace(pattern, std::move(order)); });
+    result.analysis_seconds = once([&] { cholesky.emplace(model, order); });
     const Eigen::VectorXd& x = released.equilibrium.x;
     result.all_threads = step_seconds(model, x, *cholesky, clock_seconds);
     set_thread_count(1);

@@ -27,7 +27,7 @@ TEST_CASE("assembly: more blocks around one vertex than there are colours sum to
     TermAssembly<FabricMembrane> assembly(FabricMembrane(FabricLaw(Material{}), 0.46, elements));
     const NodePattern::Cliques cliques[] = {assembly.cliques()};
     const NodePattern pattern(count + 1, 0, cliques);
-    assembly.prepare(pattern);
+    assembly.prepare(std::make_shared<NodePattern>(pattern));
     Eigen::VectorXd x(3 * (count + 1));
     x.head<3>() << 3.0, 1.0, 20.0;
     for (int k = 0; k < count; ++k) x.segment<3>(3 * (k + 1)) << 1.1 * rim[k].x(), 1.2 * rim[k].y(), 0.0;

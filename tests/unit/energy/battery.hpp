@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <functional>
 #include <random>
 #include <string>
@@ -51,7 +52,8 @@ Energy energy_of(const T& term, int vertex_count, int edge_unknowns) {
                         if (at[i] < 0) continue;
                         sums.gradient[at[i]] += local.gradient[i];
                         for (int j = 0; j < int(at.size()); ++j) {
-                            if (at[j] >= 0) sums.hessian(at[i], at[j]) += local.hessian(i, j);
+                            if (at[j] >= 0)
+                                sums.hessian(at[i], at[j]) += local.hessian(std::max(i, j), std::min(i, j));
                         }
                     }
                 }
@@ -98,7 +100,7 @@ void check_assembly(const T& term, int vertex_count, int edge_unknowns, const Ei
     TermAssembly<T> assembly(term);
     const NodePattern::Cliques cliques[] = {assembly.cliques()};
     const NodePattern pattern(vertex_count, edge_unknowns, cliques);
-    assembly.prepare(pattern);
+    assembly.prepare(std::make_shared<NodePattern>(pattern));
     const auto assemble = [&]() -> Sums {
         AssembledSums sums;
         sums.gradient.setZero(x.size());

@@ -68,8 +68,8 @@ TEST_CASE("fabric membrane: value, gradient and Hessian agree with automatic dif
         const FabricElement oracle{s.relaxed, material, options};
         const auto unknowns = jets<9>(s.x);
         const Jet<9> exact = oracle.energy<Jet<9>>(unknowns);
-        check_same({local.value, local.gradient, local.hessian}, {exact.value, exact.gradient, exact.hessian},
-                   1e-11);
+        check_same({local.value, local.gradient, local.full_hessian()},
+                   {exact.value, exact.gradient, exact.hessian}, 1e-11);
     }
 }
 
@@ -106,8 +106,8 @@ TEST_CASE("fabric membrane: thin triangles keep their derivatives") {
         const auto unknowns = jets<9>(s.x);
         const Jet<9> exact = FabricElement{s.relaxed, Material{}, plain}.energy<Jet<9>>(unknowns);
         // Strain from squared lengths loses the square of the thinness to rounding.
-        check_same({local.value, local.gradient, local.hessian}, {exact.value, exact.gradient, exact.hessian},
-                   1e-14 / (thinness * thinness));
+        check_same({local.value, local.gradient, local.full_hessian()},
+                   {exact.value, exact.gradient, exact.hessian}, 1e-14 / (thinness * thinness));
         check_orders(energy_of(term, 3, 0), s.x);
     }
 }
