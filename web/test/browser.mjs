@@ -14,7 +14,7 @@ export function launch() {
     if (!existsSync(executablePath)) throw new Error(`${executablePath} is missing: tools/setup test installs it`);
     return chromium.launch({
         executablePath,
-        args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage"],
+        args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--enable-precise-memory-info"],
     });
 }
 

@@ -98,8 +98,8 @@ static void print_summary(const Result& result, double seconds, const std::vecto
     print_list("warnings:", result.warnings);
     fmt::print("written:\n");
     for (const std::string& file : files)
-        if (file.ends_with("picture.png") || file.ends_with("report.html") || file.ends_with("shape.obj") || file.ends_with("shape.glb") ||
-            file.ends_with("report.json") || (files.size() == 1))
+        if (file.ends_with("picture.png") || file.ends_with("report.html") || file.ends_with("shape.obj") ||
+            file.ends_with("shape.glb") || file.ends_with("report.json") || (files.size() == 1))
             fmt::print("  {}\n", file);
 }
 

@@ -111,10 +111,8 @@ Json add_film(PackedArrays& arrays, const ReleaseFilm& film) {
 Json index_of(const PackedArrays& arrays) {
     Json index = Json::object();
     for (const PackedArray& array : arrays.list()) {
-        Json entry = {{"type", array.type},
-                      {"count", array.count},
-                      {"components", array.components},
-                      {"at", array.at}};
+        Json entry = {
+            {"type", array.type}, {"count", array.count}, {"components", array.components}, {"at", array.at}};
         if (!array.scale.empty()) {
             entry["origin"] = array.origin;
             entry["scale"] = array.scale;
@@ -160,9 +158,10 @@ std::string html_report(const Result& result, const SurfaceFields& fields) {
     about["arrays"] = index_of(arrays);
 
     std::string html(page.substr(0, mark));
-    const auto dump = [](const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); };
-    html += script("ruche-report", "application/json",
-                   for_script(dump(Json::parse(report_json(result)))));
+    const auto dump = [](const Json& json) {
+        return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    };
+    html += script("ruche-report", "application/json", for_script(dump(Json::parse(report_json(result)))));
     html += script("ruche-page", "application/json", for_script(dump(about)));
     html += script("ruche-arrays", "application/octet-stream", base64(arrays.bytes()));
     html += page.substr(mark + page_data_mark.size());

@@ -71,8 +71,7 @@ void PackedArrays::add_relative(const std::string& name, std::span<const double>
     constexpr double most = 65504.0;
     for (const double v : values) {
         const double kept = std::isnan(v) ? v : std::clamp(v, -most, most);
-        append_bytes(bytes_,
-                     Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(static_cast<float>(kept))));
+        append_bytes(bytes_, Eigen::numext::bit_cast<std::uint16_t>(Eigen::half(static_cast<float>(kept))));
     }
 }
 
@@ -85,8 +84,7 @@ std::string base64(const std::string& bytes) {
         std::uint32_t word = 0;
         for (std::size_t k = 0; k < 3; ++k)
             word = word << 8U | (k < left ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k)
-            text += k <= left ? letters[word >> (18 - 6 * k) & 63U] : '=';
+        for (std::size_t k = 0; k < 4; ++k) text += k <= left ? letters[word >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
 }

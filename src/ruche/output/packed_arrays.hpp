@@ -7,8 +7,8 @@
 
 namespace ruche {
 
-/// Where an array of numbers lies in a run of bytes, and how to read it there: little endian; a stored integer
-/// q of component k stands for origin[k] + scale[k] q (itself where these are empty).
+/// Where an array of numbers lies in a run of bytes, and how to read it there: little endian; a stored
+/// integer q of component k stands for origin[k] + scale[k] q (itself where these are empty).
 struct PackedArray {
     std::string name;
     std::string type;  ///< "u8", "u16", "u32", or "f16": IEEE 754 binary16
@@ -32,8 +32,8 @@ class PackedArrays {
     /// range. Values have to be finite.
     void add_even(const std::string& name, std::span<const double> values, int components = 1);
 
-    /// In 16 bits, each exact to 1/2048 of itself, beyond 65504 cut off: for values over many decades. What is
-    /// not a number stays none.
+    /// In 16 bits, each exact to 1/2048 of itself, beyond 65504 cut off: for values over many decades. What
+    /// is not a number stays none.
     void add_relative(const std::string& name, std::span<const double> values);
 
   private:

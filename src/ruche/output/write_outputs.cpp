@@ -22,10 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array all_names = {"shape.obj",  "shape.mtl",   "shape.ply",   "shape.vtu",
-                                  "layout.obj", "layout.ply",  "layout.vtu",  "shape.glb",
-                                  "scene.toml", "state.ruche", "picture.png", "report.html",
-                                  "report.json"};
+constexpr std::array all_names = {"shape.obj",   "shape.mtl",   "shape.ply",  "shape.vtu",  "layout.obj",
+                                  "layout.ply",  "layout.vtu",  "shape.glb",  "scene.toml", "state.ruche",
+                                  "picture.png", "report.html", "report.json"};
 
 /// A file to write: its name, and how its contents are made when its turn comes.
 struct Output {

@@ -114,7 +114,8 @@ ReleaseFilm follow(const Result& result, PrintMesh layout, const Control& contro
 }  // namespace
 
 std::optional<ReleaseFilm> film_release(const Result& result, const Control& control) {
-    if (result.scene.output.film_frames == 0 || result.equilibrium.status != SolveStatus::converged) return {};
+    if (result.scene.output.film_frames == 0 || result.equilibrium.status != SolveStatus::converged)
+        return {};
     try {
         std::optional<PrintMesh> layout = quick_layout(result);
         if (!layout) return {};

@@ -20,8 +20,8 @@ struct FilmFrame {
     std::vector<Vec3> shape;                    ///< one position per vertex of the film's layout, mm
 };
 
-/// How a sheet gets from flat to its released shape: equilibria at growing pre-stretch, beginning with the flat
-/// layout; the released shape itself is not among them. On a mesh of its own, which is coarser where the
+/// How a sheet gets from flat to its released shape: equilibria at growing pre-stretch, beginning with the
+/// flat layout; the released shape itself is not among them. On a mesh of its own, which is coarser where the
 /// result's is fine. Each frame is turned to lie as near as possible to the next.
 struct ReleaseFilm {
     PrintMesh layout;

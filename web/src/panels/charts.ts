@@ -44,15 +44,17 @@ export function distribution(result: Result, attention: Attention): HTMLElement 
     // All strips alike: a histogram of rounding errors would say the opposite of what is so.
     const domain = spread < 0.02 * Math.abs(mean) ? [mean - 0.05 * Math.abs(mean), mean + 0.05 * Math.abs(mean)] : undefined;
     const chart = responsive("Histogram of strip curvatures", (width) => {
-        const at = [attention.chosen.value, attention.hovered.value]
-            .map((index) => result.report.strips[index]?.curvature_per_mm)
-            .filter((v): v is number => typeof v === "number");
+        const marks = [
+            { colour: "var(--chosen)", at: result.report.strips[attention.chosen.value]?.curvature_per_mm },
+            { colour: "var(--hovered)", at: result.report.strips[attention.hovered.value]?.curvature_per_mm },
+        ].filter(({ at }) => typeof at === "number");
         return Plot.plot({
             width,
             height: 190,
             marginLeft: 38,
             marginBottom: 38,
             x: { label: "curvature, 1/mm", ...(domain ? { domain } : { nice: true }), tickFormat: (v: number) => number(v, 3) },
+            color: { type: "identity" },
             y: { label: "strips", grid: true, tickFormat: (v: number) => (Number.isInteger(v) ? String(v) : "") },
             marks: [
                 Plot.rectY(values, {
@@ -61,7 +63,7 @@ export function distribution(result: Result, attention: Attention): HTMLElement 
                     inset: 0.5,
                 }),
                 Plot.ruleY([0]),
-                Plot.ruleX(at, { stroke: "var(--chosen)", strokeWidth: 2 }),
+                Plot.ruleX(marks, { x: "at", stroke: "colour", strokeWidth: 2.5 }),
             ],
         });
     });

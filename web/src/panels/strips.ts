@@ -5,21 +5,28 @@ import type { Attention } from "../signal";
 
 interface Column {
     key: string;
+    /** After the decimal point. */
+    digits: number;
     label: string;
     unit: string;
     value: (strip: StripReport, index: number) => number | string | null;
 }
 
 const columns: Column[] = [
-    { key: "id", label: "strip", unit: "", value: (s) => s.id },
-    { key: "curvature", label: "curvature", unit: "1/mm", value: (s) => s.curvature_per_mm },
-    { key: "radius", label: "radius", unit: "mm", value: (s) => s.radius_mm },
-    { key: "stretch", label: "stretch", unit: "", value: (s) => s.stretch },
-    { key: "length", label: "length", unit: "mm", value: (s) => s.printed_length_mm },
-    { key: "fit", label: "fit", unit: "mm", value: (s) => s.fit_rms_mm },
+    { key: "id", digits: 0, label: "strip", unit: "", value: (s) => s.id },
+    { key: "curvature", digits: 5, label: "curvature", unit: "1/mm", value: (s) => s.curvature_per_mm },
+    { key: "radius", digits: 2, label: "radius", unit: "mm", value: (s) => s.radius_mm },
+    { key: "stretch", digits: 4, label: "stretch", unit: "", value: (s) => s.stretch },
+    { key: "length", digits: 1, label: "length", unit: "mm", value: (s) => s.printed_length_mm },
+    { key: "fit", digits: 3, label: "fit", unit: "mm", value: (s) => s.fit_rms_mm },
 ];
 
 const most = 400;
+
+/** The same number of decimals in all of a column, so that it can be read downwards. */
+function aligned(value: number | null, digits: number): string {
+    return value === null ? "–" : value.toFixed(digits).replace("-", "\u2212");
+}
 
 /** "curvature 0.1524 /mm, radius 6.56 mm, stretch 0.950". */
 export function stripFacts(strip: StripReport): [string, string][] {
@@ -67,7 +74,7 @@ export function stripTable(result: Result, attention: Attention): HTMLElement {
             },
             ...columns.map((c) => {
                 const value = c.value(strip, i);
-                return typeof value === "string" ? h("th", { scope: "row" }, value) : h("td", {}, c.key === "radius" && value === null ? "flat" : number(value));
+                return typeof value === "string" ? h("th", { scope: "row" }, value) : h("td", {}, c.key === "radius" && value === null ? "flat" : aligned(value, c.digits));
             }),
         );
         rows.set(i, made);
@@ -102,18 +109,26 @@ export function stripTable(result: Result, attention: Attention): HTMLElement {
             h("button", { type: "button", click: sort }, column.label, column.unit !== "" && h("small", {}, ` ${column.unit}`)),
         );
     });
+    const table = h("table", { role: "grid" }, h("thead", {}, h("tr", {}, ...heads)), body);
+    const scroll = h("div", { class: "scroll" }, table);
     fill();
     attention.hovered.watch(mark);
     attention.chosen.watch((i) => {
         mark();
-        rows.get(i)?.scrollIntoView({ block: "nearest" });
+        const row = rows.get(i);
+        if (!row) return;
+        // Only the table scrolls: the page stays where its reader is.
+        const top = row.offsetTop - (table.tHead?.offsetHeight ?? 0);
+        if (top < scroll.scrollTop) scroll.scrollTop = top;
+        const low = row.offsetTop + row.offsetHeight - scroll.clientHeight;
+        if (low > scroll.scrollTop) scroll.scrollTop = low;
     });
     return h(
         "section",
         { class: "card strips" },
         h("h2", {}, "Strips"),
         h("p", { class: "hint" }, "Point at a row, or at a strip above. Curvature is that of the centre line, positive where the back is concave; stretch is released over printed length; fit is how far the centre line is from a circle."),
-        h("div", { class: "scroll" }, h("table", { role: "grid" }, h("thead", {}, h("tr", {}, ...heads)), body)),
+        scroll,
         more,
     );
 }
