@@ -86,7 +86,7 @@ export class Stage {
     /** The strip under a point of the page in one of the views, -1 for bare fabric or nothing. */
     stripAt(placing: Placing, clientX: number, clientY: number): number {
         const hit = this.views[placing].pick(clientX, clientY);
-        return hit ? this.modelOf(placing).strip(hit.triangle) : -1;
+        return hit ? this.modelOf(placing).strip(hit) : -1;
     }
 
     private layOut(): HTMLElement {
@@ -195,8 +195,9 @@ export class Stage {
                 if (last) this.point(placing, last);
             });
         });
-        canvas.addEventListener("pointerleave", () => {
+        canvas.addEventListener("pointerleave", (event) => {
             last = undefined;
+            if (event.pointerType !== "mouse") return;  // what a finger has asked for stays after it is lifted
             this.attention.hovered.set(-1);
             this.cards[placing].hidden = true;
         });
@@ -221,7 +222,7 @@ export class Stage {
         const card = this.cards[placing];
         card.hidden = !hit;
         if (!hit) return this.attention.hovered.set(-1);
-        this.attention.hovered.set(this.modelOf(placing).strip(hit.triangle));
+        this.attention.hovered.set(this.modelOf(placing).strip(hit));
         card.replaceChildren(...this.facts(placing, hit));
         const frame = this.hosts[placing].getBoundingClientRect();
         const x = event.clientX - frame.left;
@@ -238,14 +239,14 @@ export class Stage {
             for (const view of Object.values(this.views)) view.draw();
             return;
         }
-        const strip = hit ? this.modelOf(placing).strip(hit.triangle) : -1;
+        const strip = hit ? this.modelOf(placing).strip(hit) : -1;
         this.attention.chosen.set(strip === this.attention.chosen.value ? -1 : strip);
         if (event.pointerType !== "mouse") this.point(placing, event);
     }
 
     private facts(placing: Placing, hit: SheetHit): HTMLElement[] {
         const model = this.modelOf(placing);
-        const index = model.strip(hit.triangle);
+        const index = model.strip(hit);
         const strip = this.result.report.strips[index];
         const lines: [string, string][] = [];
         if (strip) {

@@ -220,12 +220,20 @@ test("page: dark where the reader's system is dark", async () => {
     await page.close();
 });
 
-test("page: in print the canvases are pictures", async () => {
-    const page = await open(browser, torus);
-    const printed = await page.pdf({ format: "A4", printBackground: true });
-    assert.ok(printed.length > 100000, `${printed.length} bytes: no picture can be in it`);
-    if (process.env.RUCHE_SCREENSHOTS) (await import("node:fs")).writeFileSync(join(process.env.RUCHE_SCREENSHOTS, "print.pdf"), printed);
+test("page: in print the views are pictures, tables are whole and nothing is left to click", async () => {
+    const page = await open(browser, torus, { viewport: { width: 800, height: 1100 } });
+    await page.emulateMedia({ media: "print" });
+    await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+    assert.equal(await page.locator("img.printed:visible").count(), 2);
+    assert.equal(await page.locator("button:visible, select:visible, canvas:visible").count(), 6, "only the table's headings");
+    const rows = page.locator(".strips tbody tr");
+    const [table, last] = await Promise.all([page.locator(".strips").boundingBox(), rows.last().boundingBox()]);
+    assert.ok(last.y + last.height <= table.y + table.height + 1, "rows are cut off");
+    await screenshot(page, "print", { fullPage: true });
+    await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
     assert.equal(await page.locator("img.printed").count(), 0);
+    await page.emulateMedia({ media: null });
+    assert.ok((await page.pdf({ format: "A4", printBackground: true })).length > 100000, "no picture can be in it");
     await page.close();
 });
 

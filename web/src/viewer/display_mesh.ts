@@ -20,7 +20,7 @@ export interface DisplayMesh {
     offset: Float32Array;
     /** Per display vertex of a wall: the other end of its rim edge, to turn the normal outwards; else -1. */
     along: Int32Array;
-    /** Per display vertex: the side it belongs to: 0 fabric, 1 front plastic, 2 back plastic. */
+    /** Per display vertex: 0 fabric, 1 front plastic, 2 back plastic, 3 fabric with plastic on its back only. */
     part: Uint8Array;
     /** Triangles of the sheet around each display vertex, as runs of `around`. */
     aroundStart: Uint32Array;
@@ -132,7 +132,8 @@ export function displayMesh(sheet: Sheet, stripCount: number): DisplayMesh {
         const keep = (range: Range) => {
             for (const strip of new Set([group.front, group.back])) stripRanges[strip]?.push(range);
         };
-        keep(build.patch(group.triangles, 0, 0, new Map()));
+        const behind = group.backMm > 0 && !(group.frontMm > 0);
+        keep(build.patch(group.triangles, 0, behind ? 3 : 0, new Map()));
         if (group.frontMm > 0) keep(build.patch(group.triangles, group.frontMm, 1, new Map()));
         if (group.backMm > 0) keep(build.patch(group.triangles, -group.backMm, 2, new Map()));
     }

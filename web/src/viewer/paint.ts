@@ -24,6 +24,8 @@ export function paintMaterials(
     out: Uint16Array,
 ): void {
     const parts = [colours.fabric, colours.plasticFront, colours.plasticBack].map(parseColour);
+    // Plastic on the back shows through the fabric.
+    parts.push(parts[0]!.map((c, k) => 0.66 * c + 0.2 * parts[2]![k]!) as Rgb);
     const alarm = parseColour(colours.alarm);
     for (let i = 0; i < display.count; ++i) {
         let wrong = false;

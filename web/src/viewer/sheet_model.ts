@@ -7,6 +7,8 @@ import { displayMesh, flatPositions, placeDisplay, type DisplayMesh } from "./di
 /** Where a ray met the sheet. */
 export interface SheetHit {
     triangle: number;
+    /** Whether the ray came from the front. */
+    fromFront: boolean;
     /** Of the triangle's three corners. */
     weights: [number, number, number];
     /** mm, in the coordinates of the positions that were asked. */
@@ -68,6 +70,7 @@ class Placed {
         if (!first || first.faceIndex == null) return undefined;
         return {
             triangle: first.faceIndex,
+            fromFront: this.normal(first.faceIndex).dot(ray.direction) <= 0,
             weights: this.weights(first.faceIndex, first.point),
             point: first.point.clone(),
         };
@@ -75,6 +78,11 @@ class Placed {
 
     private corner(triangle: number, k: number): Vector3 {
         return new Vector3().fromArray(this.positions, 3 * this.sheet.triangles[3 * triangle + k]!);
+    }
+
+    private normal(triangle: number): Vector3 {
+        const [a, b, c] = [0, 1, 2].map((k) => this.corner(triangle, k)) as [Vector3, Vector3, Vector3];
+        return b.sub(a).cross(c.sub(a));
     }
 
     private weights(triangle: number, point: Vector3): [number, number, number] {
@@ -131,11 +139,11 @@ export class SheetModel {
         return out;
     }
 
-    /** The strip at a triangle, seen from the front or the back: -1 for bare fabric. */
-    strip(triangle: number): number {
+    /** The strip that was hit, -1 for bare fabric: where both sides are printed the one that was looked at. */
+    strip({ triangle, fromFront }: Pick<SheetHit, "triangle" | "fromFront">): number {
         const front = this.sheet.frontStrip[triangle]!;
         const back = this.sheet.backStrip[triangle]!;
-        if (front < 0 || back < 0) return front < 0 ? back : front;
-        return this.sheet.backMm[triangle]! > this.sheet.frontMm[triangle]! ? back : front;
+        const [near, far] = fromFront ? [front, back] : [back, front];
+        return near >= 0 ? near : far;
     }
 }
