@@ -101,6 +101,8 @@ static void print_summary(const Result& result, double seconds, const std::vecto
         if (file.ends_with("picture.png") || file.ends_with("report.html") || file.ends_with("shape.obj") ||
             file.ends_with("shape.glb") || file.ends_with("report.json") || (files.size() == 1))
             fmt::print("  {}\n", file);
+    if (result.scene.output.page && !can_write_page())
+        fmt::print("  no report.html: this program was built without npm (tools/setup installs it)\n");
 }
 
 static ExitCode exit_code(const Result& result) {
