@@ -139,6 +139,7 @@ export class Stage {
         if (!this.filmModel) this.filmModel = new SheetModel(film.sheet, frame.shape, this.result.report.strips.length);
         else this.filmModel.setShape(frame.shape);
         this.views.shape.show(this.filmModel, true);
+        this.views.shape.makeRoom();
         this.paint();
     }
 

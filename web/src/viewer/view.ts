@@ -155,6 +155,18 @@ export class View {
         this.draw();
     }
 
+    /** Steps back until all of the sheet is in the picture: a flat sheet is wider than what becomes of it. */
+    makeRoom(): void {
+        if (this.flat || !this.mesh) return;
+        this.group.updateMatrixWorld();
+        const arm = this.camera.position.clone().sub(this.controls.target);
+        const needed = this.fittingDistance(arm.clone().normalize());
+        if (needed <= arm.length()) return;
+        this.camera.position.copy(this.controls.target).addScaledVector(arm.normalize(), needed);
+        this.controls.update();
+        this.draw();
+    }
+
     /** Turns (or, of the drawing, shifts) by steps of the arrow keys. */
     turn(right: number, up: number): void {
         const arm = this.camera.position.clone().sub(this.controls.target);
