@@ -35,9 +35,9 @@ constexpr Definition definitions[] = {
      [](const R&, const F& f, std::size_t t) { return f.face_curvature[t].min; }},
     {"mean_curvature_per_mm", "mean curvature", "/mm", ColourMap::diverging,
      [](const R&, const F& f, std::size_t t) { return f.face_curvature[t].mean(); }},
-    {"gauss_curvature_per_mm2", "Gauss curvature", "/mm\u00B2", ColourMap::diverging,
+    {"gauss_curvature_per_mm2", "Gauss curvature", "/mm^2", ColourMap::diverging,
      [](const R&, const F& f, std::size_t t) { return f.face_curvature[t].gauss(); }},
-    {"energy_density_mJ_per_mm2", "energy density", "mJ/mm\u00B2", ColourMap::sequential,
+    {"energy_density_mJ_per_mm2", "energy density", "mJ/mm^2", ColourMap::sequential,
      [](const R& r, const F&, std::size_t t) {
          return r.energy_density.empty() ? NAN : r.energy_density[t];
      }},
