@@ -28,7 +28,7 @@ TEST_CASE("page: holds the report, the arrays and where they lie" * doctest::ski
     const std::string html = page_of(result);
     const auto report = nlohmann::json::parse(content(html, "ruche-report"));
     CHECK(report["strips"].size() == 3);
-    const auto page = nlohmann::json::parse(content(html, "ruche-page"));
+    const auto page = nlohmann::ordered_json::parse(content(html, "ruche-page"));
     const auto triangles = result.layout.mesh.triangles.size();
     CHECK(page["arrays"]["triangles"]["count"] == triangles);
     CHECK(page["arrays"]["shape_mm"]["count"] == result.shape.size());

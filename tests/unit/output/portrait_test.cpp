@@ -60,7 +60,7 @@ TEST_CASE("portrait: walking around, looking from above and colouring each chang
     PortraitOptions coloured = small;
     coloured.colour = "mean_curvature_per_mm";
     CHECK(unlike(usual, Portrait(result, coloured).released()) > 500);
-    coloured.colour = "mean_curvature";
+    coloured.colour = "mean_curvatur_per_mm";
     CHECK_THROWS_WITH_AS(Portrait(result, coloured), doctest::Contains("did you mean mean_curvature_per_mm"),
                          InputError);
 }
