@@ -13,7 +13,8 @@ import pytest
 PROGRAM = os.environ["RUCHE_PROGRAM"]
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">
 <path id="strip" d="M 4 5 H 16" stroke="black" stroke-width="1" fill="none"/></svg>"""
-COARSE = ["--set", "fabric.margin_mm=1", "--set", "mesh.size_mm=1", "--set", "output.picture=false"]
+COARSE = ["--set", "fabric.margin_mm=1", "--set", "mesh.size_mm=1", "--set", "output.picture=false",
+          "--set", "output.page=false"]
 
 
 def ruche(*arguments, cwd, **more):
@@ -42,7 +43,7 @@ def report(place):
 
 def test_version_and_help(tmp_path):
     assert re.fullmatch(r"ruche \d+\.\d+\.\d+\n", ruche("--version", cwd=tmp_path).stdout)
-    for verb in [], ["simulate"], ["check"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"], ["bench"]:
+    for verb in [], ["simulate"], ["check"], ["render"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"], ["bench"]:
         run = ruche(*verb, "--help", cwd=tmp_path)
         assert run.returncode == 0 and run.stderr == ""
         assert len(run.stdout) > 100

@@ -54,6 +54,7 @@ int run(int count, char** arguments) {
     ruche::Action action;
     ruche::add_simulate(program, action);
     ruche::add_check(program, action);
+    ruche::add_render(program, action);
     ruche::add_pattern(program, action);
     ruche::add_bench(program, action);
     ruche::add_cards(program, action);

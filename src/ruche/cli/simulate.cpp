@@ -14,8 +14,10 @@
 #include "ruche/cli/progress_display.hpp"
 #include "ruche/cli/scene_arguments.hpp"
 #include "ruche/cli/verbs.hpp"
+#include "ruche/output/html_report.hpp"
 #include "ruche/output/metrics.hpp"
 #include "ruche/output/result_folder.hpp"
+#include "ruche/scene/release_film.hpp"
 
 namespace ruche {
 
@@ -96,9 +98,11 @@ static void print_summary(const Result& result, double seconds, const std::vecto
     print_list("warnings:", result.warnings);
     fmt::print("written:\n");
     for (const std::string& file : files)
-        if (file.ends_with("picture.png") || file.ends_with("shape.obj") || file.ends_with("shape.glb") ||
-            file.ends_with("report.json") || (files.size() == 1))
+        if (file.ends_with("picture.png") || file.ends_with("report.html") || file.ends_with("shape.obj") ||
+            file.ends_with("shape.glb") || file.ends_with("report.json") || (files.size() == 1))
             fmt::print("  {}\n", file);
+    if (result.scene.output.page && !can_write_page())
+        fmt::print("  no report.html: this program was built without npm (tools/setup installs it)\n");
 }
 
 static ExitCode exit_code(const Result& result) {
@@ -106,6 +110,14 @@ static ExitCode exit_code(const Result& result) {
     if (end.status == SolveStatus::interrupted) return ExitCode::interrupted;
     if (result.alternatives && result.alternatives->interrupted) return ExitCode::interrupted;
     return end.status == SolveStatus::converged && end.stable ? ExitCode::converged : ExitCode::unfinished;
+}
+
+/// For the page's slider.
+static void add_film(Result& result, const Control& control) {
+    if (!result.scene.output.page || !can_write_page()) return;
+    const auto begin = std::chrono::steady_clock::now();
+    result.film = film_release(result, control);
+    result.seconds["film"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 static ExitCode run(const SimulateArguments& arguments) {
@@ -131,10 +143,11 @@ static ExitCode run(const SimulateArguments& arguments) {
     } else if (!arguments.quiet) {
         control.report = [&](const Progress& progress) { display.show(progress); };
     }
-    const ResultWithAlternatives found =
+    ResultWithAlternatives found =
         arguments.alternatives > 0
             ? simulate_alternatives(scene, arguments.alternatives, control, start)
             : ResultWithAlternatives{.ordinary = simulate(scene, control, start), .shapes = {}};
+    add_film(found.ordinary, control);
     const std::vector<std::string> files = write_result(found, folder, control);
     display.clear();
     const Result& result = found.ordinary;

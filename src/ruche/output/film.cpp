@@ -56,6 +56,7 @@ void develop_light(Film& film, float plane_tolerance) {
         if (p.samples == 0.0F) continue;
         for (Vec3f* v : {&p.albedo, &p.light, &p.gloss, &p.normal, &p.position}) *v /= p.samples;
         p.part /= p.samples;
+        p.cover /= p.samples;
         p.samples = 1.0F;
     }
     std::vector<Smoothed> smoothed(film.pixels.size());

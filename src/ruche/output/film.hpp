@@ -14,6 +14,7 @@ struct FilmPixel {
     Vec3f normal = Vec3f::Zero();
     Vec3f position = Vec3f::Zero();  ///< stage units
     float part = 0.0F;               ///< 0 the ground, 1 fabric, 2 plastic
+    float cover = 0.0F;              ///< 1 where the sheet is, 0 on the ground
     float samples = 0.0F;
 };
 

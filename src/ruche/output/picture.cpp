@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "ruche/core/atomic_file.hpp"
-#include "ruche/core/parallel.hpp"
 #include "ruche/output/caption.hpp"
+#include "ruche/output/develop.hpp"
 #include "ruche/output/palette.hpp"
 #include "ruche/output/pen.hpp"
 #include "ruche/output/render.hpp"
@@ -40,22 +40,6 @@ Composition compose(const PictureOptions& options) {
     return c;
 }
 
-/// The paper behind everything, a little brighter in the middle; linear.
-std::vector<Vec3f> backdrop(const Composition& c) {
-    const auto rgb = palette::paper.linear();
-    const Vec3f paper(static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2]));
-    std::vector<Vec3f> result(static_cast<std::size_t>(c.width) * c.height);
-    for (int y = 0; y < c.height; ++y)
-        for (int x = 0; x < c.width; ++x) {
-            const float u = static_cast<float>(x) / c.width - 0.52F,
-                        v = static_cast<float>(y) / c.height - 0.45F;
-            const float far = u * u + v * v;
-            const Vec3f tint(1.0F - 0.26F * far, 1.0F - 0.31F * far, 1.0F - 0.38F * far);
-            result[static_cast<std::size_t>(y) * c.width + x] = paper.cwiseProduct(tint);
-        }
-    return result;
-}
-
 struct Panel {
     Stage stage;
     Camera camera;
@@ -84,43 +68,6 @@ std::optional<Panel> shape_panel(const Result& result, const Composition& c) {
     Stage stage = make_stage(result, result.shape, view.placement);
     if (stage.outline.empty()) return {};
     return make_panel(std::move(stage), view.elevation_deg, 7.0F, c.shape);
-}
-
-/// Lets shadows on the ground run out before the borders of a panel.
-void fade_borders(Film& film, int left, int right, float reach) {
-    for (int y = 0; y < film.height; ++y)
-        for (int x = left; x < right; ++x) {
-            FilmPixel& p = film.at(x, y);
-            const auto nearest =
-                static_cast<float>(std::min({x - left, right - 1 - x, y, film.height - 1 - y}));
-            const float inside = std::min(1.0F, nearest / reach);
-            const float smooth = inside * inside * (3.0F - 2.0F * inside);
-            const float share = (1.0F - p.part) * (1.0F - smooth);
-            if (share > 0.0F) p.light += share * (Vec3f::Ones() - p.light);
-        }
-}
-
-/// Light to screen values: a soft shoulder near white, then sRGB.
-unsigned char screen_value(float linear, float dither) {
-    constexpr float knee = 0.82F;
-    if (linear > knee) linear = knee + (1.0F - knee) * (1.0F - std::exp(-(linear - knee) / (1.0F - knee)));
-    const float s = linear <= 0.0031308F ? 12.92F * linear : 1.055F * std::pow(linear, 1.0F / 2.4F) - 0.055F;
-    return static_cast<unsigned char>(std::clamp(255.0F * s + dither, 0.0F, 255.0F));
-}
-
-Image print(const Film& film) {
-    Image image{film.width, film.height, std::vector<unsigned char>(film.pixels.size() * 3)};
-    parallel_for(static_cast<std::size_t>(film.height), [&](std::size_t y) {
-        for (int x = 0; x < film.width; ++x) {
-            const std::size_t i = y * film.width + x;
-            const FilmPixel& p = film.pixels[i];
-            const Vec3f colour = p.albedo.cwiseProduct(p.light) + p.gloss;
-            // An ordered dither keeps the soft background free of bands.
-            const float dither = static_cast<float>((x * 5 + y * 3) % 8) / 8.0F + 0.0625F;
-            for (int k = 0; k < 3; ++k) image.rgb[3 * i + k] = screen_value(colour[k], dither);
-        }
-    });
-    return image;
 }
 
 /// The longest round length, mm, whose bar is not longer than `room` pixels.
@@ -177,7 +124,7 @@ void draw_caption(Image& image, const Composition& c, const Caption& caption) {
 
 Image draw_picture(const Result& result, const PictureOptions& options) {
     const Composition c = compose(options);
-    const std::vector<Vec3f> ground = backdrop(c);
+    const std::vector<Vec3f> ground = backdrop(c.width, c.height, {0.52F, 0.45F});
     Film film(c.width, c.height);
     for (std::size_t i = 0; i < film.pixels.size(); ++i) {
         film.pixels[i].albedo = ground[i];
@@ -194,8 +141,8 @@ Image draw_picture(const Result& result, const PictureOptions& options) {
     shoot(drawing, 0, split);
     shoot(shape, split, c.width);
     develop_light(film, 0.01F);
-    if (drawing) fade_borders(film, 0, split, 8.0F * c.unit);
-    if (shape) fade_borders(film, split, c.width, 12.0F * c.unit);
+    if (drawing) fade_borders(film, {.left = 0, .right = split, .reach = 8.0F * c.unit});
+    if (shape) fade_borders(film, {.left = split, .right = c.width, .reach = 12.0F * c.unit});
     Image image = print(film);
     if (drawing) draw_scale_bar(image, c, *drawing, c.drawing, "printed flat on stretched fabric");
     if (shape) draw_scale_bar(image, c, *shape, c.shape, "released");

@@ -145,6 +145,7 @@ class Photographer {
         pixel.normal += s.normal;
         pixel.position += s.position;
         pixel.part += s.is_fabric() ? 1.0F : 2.0F;
+        pixel.cover += 1.0F;
 
         const Vec3f to_key = key_sample(dice.roll(n, 1));
         const float facing = s.normal.dot(to_key);

@@ -157,6 +157,10 @@ Surfel look_at(const Stage& stage, const Ray& ray, const RayHit& hit, float pixe
     surfel.normal = smooth;
     surfel.albedo = plain_albedo(surfel.look);
     const int source = part.source[hit.triangle];
+    if (!stage.tint.empty()) {
+        surfel.albedo = stage.tint[source];
+        return surfel;
+    }
     if (stage.passes_through[source] != 0) {
         surfel.albedo = linear(palette::alarm);
         return surfel;

@@ -19,6 +19,7 @@ struct Stage {
     std::vector<char> passes_through;  ///< per layout triangle: the sheet passes through itself there
     std::vector<float> stretch;        ///< per layout triangle: square root of released over printed area
     std::vector<Vec3f> outline;        ///< points that a camera has to see
+    std::vector<Vec3f> tint;           ///< per layout triangle, linear: instead of the materials' colours
 };
 
 enum class Look { fabric_front, fabric_back, plastic_front, plastic_back };

@@ -11,6 +11,7 @@
 
 #include "ruche/core/atomic_file.hpp"
 #include "ruche/output/exporters.hpp"
+#include "ruche/output/html_report.hpp"
 #include "ruche/output/picture.hpp"
 #include "ruche/output/report.hpp"
 #include "ruche/scene/state.hpp"
@@ -21,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array all_names = {"shape.obj",  "shape.mtl",   "shape.ply",   "shape.vtu",
-                                  "layout.obj", "layout.ply",  "layout.vtu",  "shape.glb",
-                                  "scene.toml", "state.ruche", "picture.png", "report.json"};
+constexpr std::array all_names = {"shape.obj",   "shape.mtl",   "shape.ply",  "shape.vtu",  "layout.obj",
+                                  "layout.ply",  "layout.vtu",  "shape.glb",  "scene.toml", "state.ruche",
+                                  "picture.png", "report.html", "report.json"};
 
 /// A file to write: its name, and how its contents are made when its turn comes.
 struct Output {
@@ -33,7 +34,7 @@ struct Output {
 
 /// In the order in which they take their places.
 std::vector<Output> outputs(const Result& result, const std::string& folder, const ExportSurface& shape,
-                            const ExportSurface& layout) {
+                            const ExportSurface& layout, const SurfaceFields& fields) {
     const OutputOptions& wanted = result.scene.output;
     std::vector<Output> list;
     if (wanted.obj) {
@@ -55,6 +56,8 @@ std::vector<Output> outputs(const Result& result, const std::string& folder, con
                             return to_png(draw_picture(result, {.width_px = wanted.picture_width_px,
                                                                 .height_px = wanted.picture_height_px}));
                         }});
+    if (wanted.page && can_write_page())
+        list.push_back({"report.html", [&] { return html_report(result, fields); }});
     list.push_back({"scene.toml", [&] { return to_toml(result.scene, folder); }});
     list.push_back({"state.ruche", [&] { return to_bytes(state_of(result)); }});
     list.push_back({"report.json", [&] { return report_json(result); }});
@@ -90,7 +93,7 @@ std::vector<std::string> write_outputs(const Result& result, const std::string& 
     const SurfaceFields fields = surface_fields(result, energy_density);
     const ExportSurface shape = released_surface(result, fields), layout = layout_surface(result, fields);
     const std::string name = folder.string();
-    const std::vector<Output> list = outputs(result, name, shape, layout);
+    const std::vector<Output> list = outputs(result, name, shape, layout, fields);
     std::vector<PendingFile> files;
     for (const Output& output : list) {
         control.say({.phase = "write",

@@ -10,8 +10,8 @@
 namespace ruche {
 
 /// Writes what `result.scene.output` asks for into the folder `dir` (made if needed): shape and layout as
-/// .obj, .ply and .vtu, shape.glb, picture.png; and always scene.toml (complete: can be run again),
-/// state.ruche (to resume or start from) and report.json. All files are first written completely
+/// .obj, .ply and .vtu, shape.glb, picture.png, report.html; and always scene.toml (complete: can be run
+/// again), state.ruche (to resume or start from) and report.json. All files are first written completely
 /// under temporary names; only then does the new result replace an earlier one, report.json last, and files
 /// of the earlier result that this one does not have are removed. `energy_density` (mJ per mm^2 of layout,
 /// one per triangle, or none) becomes a field of the surfaces. Returns the paths written. Throws

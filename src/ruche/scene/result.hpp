@@ -7,6 +7,7 @@
 
 #include "ruche/geometry/self_intersection.hpp"
 #include "ruche/meshing/print_mesh.hpp"
+#include "ruche/scene/release_film.hpp"
 #include "ruche/scene/scene.hpp"
 #include "ruche/statics/equilibrium.hpp"
 
@@ -41,6 +42,7 @@ struct Result {
         assumptions;  ///< "fabric_thickness = 0.46 mm: not in the paper, implied by k_B", ...
     std::vector<std::string> warnings;
     std::optional<ShapeList> alternatives;  ///< when they were looked for
+    std::optional<ReleaseFilm> film;        ///< when it was made, see film_release
     std::map<std::string, double> seconds;  ///< by phase: read, mesh, release, ...
 };
 

@@ -77,6 +77,8 @@ struct OutputOptions {
     bool vtu = true;
     bool glb = true;
     bool picture = true;
+    bool page = true;
+    int film_frames = 16;
     int picture_width_px = 1600;
     int picture_height_px = 1200;
 };

@@ -138,6 +138,10 @@ std::span<const Field<OutputOptions>> fields<OutputOptions>() {
         {"vtu", &O::vtu, "", -infinity, infinity, "Write the shape as VTU (ParaView), with all fields."},
         {"glb", &O::glb, "", -infinity, infinity, "Write the shape as binary glTF, in metres, with colours."},
         {"picture", &O::picture, "", -infinity, infinity, "Write a PNG of the drawing and the shape."},
+        {"page", &O::page, "", -infinity, infinity,
+         "Write report.html, a page for the browser with drawing, shape, strips and all numbers in it."},
+        {"film_frames", &O::film_frames, "", 0, 200,
+         "Number of equilibria from flat to released that the page's slider plays; 0 for none."},
         {"picture_width_px", &O::picture_width_px, "px", 64, 16384, "Width of the picture."},
         {"picture_height_px", &O::picture_height_px, "px", 64, 16384, "Height of the picture."},
     };

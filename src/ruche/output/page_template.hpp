@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string_view>
+
+namespace ruche {
+
+/// The page without a result in it, as web/ is built into the program: HTML with the mark `page_data_mark`
+/// where the data belongs. Empty where the program was built without npm.
+std::string_view page_template();
+
+inline constexpr std::string_view page_data_mark = "<!--DATA-->";
+
+}  // namespace ruche
