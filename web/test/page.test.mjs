@@ -14,7 +14,7 @@ let torus;
 let unfinished;
 
 before(async () => {
-    torus = simulate(folder, join(source, "examples/torus/scene.toml"));
+    torus = simulate(folder, join(source, "examples/torus/scene.toml"), "--set", "output.film_frames=12");
     unfinished = simulate(folder, join(source, "examples/stars/scene.toml"), "--set", "solver.max_iterations=3");
     browser = await launch();
 }, { timeout: 240000 });

@@ -78,7 +78,7 @@ struct OutputOptions {
     bool glb = true;
     bool picture = true;
     bool page = true;
-    int film_frames = 16;
+    int film_frames = 0;
     int picture_width_px = 1600;
     int picture_height_px = 1200;
 };
