@@ -119,8 +119,10 @@ TEST_CASE("sheared sample: what its free sides give up vanishes with a longer cl
     const double wider = lost(160.0);
     MESSAGE("a square answers softer by ", 100.0 * square, " %, one four times as wide by ", 100.0 * wide,
             " %");
-    CHECK(square > 0.05);
-    CHECK(square < 0.5);
+    // A Timoshenko beam as long as it is high, its ends kept from turning, bends by V/(E h) and shears by
+    // 1.2 V/(G h); with E = 0.065 and G = 0.067 MPa that loses 55 %.
+    CHECK(square > 0.4);
+    CHECK(square < 0.6);
     CHECK(wider == doctest::Approx(0.5 * wide).epsilon(0.05));
 }
 
@@ -146,7 +148,7 @@ TEST_CASE("cantilever sample: the fabric's own strip droops as the master curve 
         CAPTURE(length);
         const CantileverResponse response = simulate_cantilever({.length_mm = length}, m);
         REQUIRE(response.converged);
-        const double weight = 9810.0 * 1e-9 * m.fabric_areal_density;  // N/mm^2
+        const double weight = 9806.65 * 1e-9 * m.fabric_areal_density;  // N/mm^2
         const double gamma = weight * std::pow(length, 3) / m.fabric_bending_stiffness;
         const auto curve = read_csv("cantilever_master_curve.csv");
         const auto above =

@@ -57,7 +57,7 @@ CantileverResponse simulate_cantilever(const CantileverSample& sample, const Mat
     if (!(material.fabric_areal_density > 0.0))
         throw InputError({.key = "material.fabric_areal_density_kg_per_m2"},
                          "a weightless strip does not hang", "Weigh a piece of known area.");
-    constexpr double gravity = 9810.0;  // mm/s^2
+    constexpr double gravity = 9806.65;  // mm/s^2
     const Grid grid = grid_of(sample);
     ModelInput sheet;
     sheet.mesh = grid.mesh();

@@ -21,7 +21,7 @@ struct PlasticResponse {
 };
 
 /// Equilibria at the given engineering strains. The law of printed plastic is linear in Green's strain, so
-/// the nominal stress is E_p (strain + 3/2 strain^2 + 1/2 strain^3), apart from what the clamps hold across.
+/// the nominal stress is E_p (strain + 3/2 strain^2 + 1/2 strain^3); what the clamps hold across adds 0.4 %.
 /// Throws InputError for a sample without size.
 [[nodiscard]] PlasticResponse simulate_plastic(const PlasticSample& sample, const Material& material,
                                                std::span<const double> strains);

@@ -124,10 +124,10 @@ TEST_CASE("virtual machine: hung weights are a table of lengths, longer on the w
     // Half of the largest force, 62.5 N: on the way back where 3 d - 0.01 d^2 = 62.5, at d = 22.5.
     const double d = 150.0 - std::sqrt(150.0 * 150.0 - 6250.0);
     const std::string half =
-        fmt::format("{:.2f},{:.2f},{:.2f},unloading\n", 62.5 / 9.81e-3, 110.0 + d, 20.0 - 0.1 * d);
+        fmt::format("{:.2f},{:.2f},{:.2f},unloading\n", 62.5 / 9.80665e-3, 110.0 + d, 20.0 - 0.1 * d);
     CHECK(count(csv, half) == 1);
     // 8/8 of it are carried at the end of both ways.
-    CHECK(count(csv, fmt::format("{:.2f},160.00,15.00,loading\n", 125.0 / 9.81e-3)) == 1);
+    CHECK(count(csv, fmt::format("{:.2f},160.00,15.00,loading\n", 125.0 / 9.80665e-3)) == 1);
 }
 
 TEST_CASE("virtual campaign: the seed decides the files, and names every record") {

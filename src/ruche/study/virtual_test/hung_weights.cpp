@@ -20,7 +20,7 @@ static double displacement_under(double force, const TestBranch& branch, double 
 std::string hung_weights_csv(const VirtualCurve& curve, double rest_length, const VirtualMachine& machine,
                              NoiseSource& noise) {
     constexpr int steps = 8;
-    constexpr double newton_per_gram = 9.81e-3;
+    constexpr double newton_per_gram = 9.80665e-3;
     const double largest = curve.displacement.back();
     const double full_force = *std::max_element(curve.force.begin(), curve.force.end());
     const TestBranch loading(curve, machine, machine.cycles - 1, true);

@@ -30,7 +30,6 @@ prestretch = {}
 [fabric]
 thickness_mm = {}
 areal_density_kg_per_m2 = {}
-poissons_ratio = {}
 youngs_modulus = "stated"
 youngs_modulus_mpa = {}
 neo_hookean_share = {}
@@ -40,8 +39,8 @@ density_kg_per_m3 = {}
 )",
         card, curves.samples.prestretch, machine.noise, machine.hysteresis, machine.seed,
         toml_quoted(card + ", virtual tests"), toml_quoted("Simulated tests of the card " + card),
-        curves.samples.prestretch, m.fabric_thickness, m.fabric_areal_density, m.fabric_poissons_ratio,
-        m.fabric_youngs_modulus, m.neo_hookean_share, m.plastic_density);
+        curves.samples.prestretch, m.fabric_thickness, m.fabric_areal_density, m.fabric_youngs_modulus,
+        m.neo_hookean_share, m.plastic_density);
 }
 
 std::string table_of(const VirtualCurve& curve, const VirtualSamples& s, const std::string& file) {

@@ -62,7 +62,7 @@ VirtualCurve shear(const VirtualSamples& s, const Material& material, double ang
     const ShearedSample sample{.length_mm = s.shear_side,
                                .width_mm = s.shear_side,
                                .angle_deg = angle,
-                               .element_size_mm = s.shear_side / (2 * s.elements_across)};
+                               .element_size_mm = s.shear_side / (4 * s.elements_across)};
     const std::vector<double> shears = graded(s.shear, shear_points);
     ShearedResponse response = simulate_sheared(sample, material, shears);
     require(response.converged, fmt::format("shear at {} degrees", angle));
