@@ -72,7 +72,7 @@ TEST_CASE("virtual machine: fabric unloads along the curve and loads above it, l
 }
 
 TEST_CASE("virtual machine: plastic is pulled once, loads along the curve and unloads below it") {
-    const VirtualMachine machine{.cycles = 3, .speed = 60.0, .noise = 0.0, .hysteresis = 0.1};
+    const VirtualMachine machine{.cycles = 3, .plastic_speed = 60.0, .noise = 0.0, .hysteresis = 0.1};
     const MachineRecord r = recorded(parabola("plastic"), machine);
     REQUIRE(r.time.size() == 501);
     CHECK(r.width.empty());

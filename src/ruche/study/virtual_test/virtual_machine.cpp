@@ -18,6 +18,8 @@ std::span<const Field<VirtualMachine>> fields<VirtualMachine>() {
          "hung masses, the rest plain."},
         {"cycles", &M::cycles, "", 1, 100, "Cycles of loading and unloading."},
         {"speed_mm_per_min", &M::speed, "mm/min", 0.01, 1e5, "Speed of the moving clamp."},
+        {"plastic_speed_mm_per_min", &M::plastic_speed, "mm/min", 0.01, 1e5,
+         "Speed of the moving clamp when plastic is pulled."},
         {"sampling_hz", &M::sampling, "Hz", 0.01, 1e4, "Readings per second."},
         {"noise", &M::noise, "", 0, 1,
          "Standard deviation of force and width over the largest value of the test, and of what is read at a "
@@ -82,7 +84,8 @@ MachineRecord record(const VirtualCurve& curve, const VirtualMachine& machine, N
     for (int stroke = 0; stroke < strokes; ++stroke)
         branches.emplace_back(curve, machine, stroke / 2, stroke % 2 == 0);
     const double largest = curve.displacement.back();
-    const double stroke_seconds = largest / (machine.speed / 60.0);
+    const double stroke_seconds =
+        largest / ((is_plastic(curve) ? machine.plastic_speed : machine.speed) / 60.0);
     const double force_noise = machine.noise * full_force(curve);
     std::normal_distribution<double> normal;
     MachineRecord record;

@@ -15,12 +15,13 @@ enum class MachineFormat { plain, bluehill, zwick, weights };
 /// How a testing machine moves, and what it adds to what the sample answers.
 struct VirtualMachine {
     MachineFormat format = MachineFormat::plain;
-    int cycles = 3;           ///< load and unload
-    double speed = 100.0;     ///< of the clamp, mm/min
-    double sampling = 5.0;    ///< Hz
-    double noise = 0.01;      ///< standard deviation over a channel's largest value
-    double hysteresis = 0.1;  ///< widest gap between loading and unloading over the largest force
-    int seed = 1;             ///< of the noise
+    int cycles = 3;               ///< load and unload
+    double speed = 100.0;         ///< of the clamp, mm/min
+    double plastic_speed = 10.0;  ///< the same for plastic, which is pulled less far
+    double sampling = 5.0;        ///< Hz
+    double noise = 0.01;          ///< standard deviation over a channel's largest value
+    double hysteresis = 0.1;      ///< widest gap between loading and unloading over the largest force
+    int seed = 1;                 ///< of the noise
 };
 
 template <>
