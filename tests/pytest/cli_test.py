@@ -43,7 +43,8 @@ def report(place):
 
 def test_version_and_help(tmp_path):
     assert re.fullmatch(r"ruche \d+\.\d+\.\d+\n", ruche("--version", cwd=tmp_path).stdout)
-    for verb in [], ["simulate"], ["check"], ["render"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"], ["bench"]:
+    verbs = [], ["simulate"], ["check"], ["render"], ["pattern"], ["pattern", "radial"], ["cards"], ["template"], ["bench"]
+    for verb in *verbs, ["virtual-test"]:
         run = ruche(*verb, "--help", cwd=tmp_path)
         assert run.returncode == 0 and run.stderr == ""
         assert len(run.stdout) > 100

@@ -20,6 +20,7 @@ void add_pattern(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_cards(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
+void add_virtual_test(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);
 
 }  // namespace ruche
