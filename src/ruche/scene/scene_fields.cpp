@@ -141,7 +141,8 @@ std::span<const Field<OutputOptions>> fields<OutputOptions>() {
         {"page", &O::page, "", -infinity, infinity,
          "Write report.html, a page for the browser with drawing, shape, strips and all numbers in it."},
         {"film_frames", &O::film_frames, "", 0, 200,
-         "Number of equilibria from flat to released that the page's slider plays, such as 16; 0 for none. They take "
+         "Number of equilibria from flat to released that the page's slider plays, such as 16; 0 for none. "
+         "They take "
          "several times as long as the release."},
         {"picture_width_px", &O::picture_width_px, "px", 64, 16384, "Width of the picture."},
         {"picture_height_px", &O::picture_height_px, "px", 64, 16384, "Height of the picture."},
