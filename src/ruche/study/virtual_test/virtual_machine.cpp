@@ -81,6 +81,7 @@ double TestBranch::width(double displacement) const {
 MachineRecord record(const VirtualCurve& curve, const VirtualMachine& machine, NoiseSource& noise) {
     const int strokes = 2 * (is_plastic(curve) ? 1 : machine.cycles);
     std::vector<TestBranch> branches;
+    branches.reserve(static_cast<std::size_t>(strokes));
     for (int stroke = 0; stroke < strokes; ++stroke)
         branches.emplace_back(curve, machine, stroke / 2, stroke % 2 == 0);
     const double largest = curve.displacement.back();
