@@ -104,6 +104,7 @@ ReleaseFilm follow(const Result& result, PrintMesh layout, const Control& contro
         keep(share, positions(x, vertices));
     }
     std::vector<Vec3> flat;
+    flat.reserve(film.layout.mesh.vertices.size());
     for (const Vec2& v : film.layout.mesh.vertices) flat.emplace_back(v.x(), v.y(), 0.0);
     input.prestretch = {1, 1};
     keep(0.0, std::move(flat));

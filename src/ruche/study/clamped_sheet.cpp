@@ -16,8 +16,8 @@ ClampedSheet::ClampedSheet(ModelInput sheet) : sheet_(std::move(sheet)) {
     }
     const double tolerance = 1e-9 * (high - low);
     for (const Vec2& p : vertices) {
-        fixed_clamp_.push_back(p.x() < low + tolerance);
-        moving_clamp_.push_back(p.x() > high - tolerance);
+        fixed_clamp_.push_back(p.x() < low + tolerance ? 1 : 0);
+        moving_clamp_.push_back(p.x() > high - tolerance ? 1 : 0);
     }
     for (const Edge& edge : find_edges(sheet_.mesh).edges)
         if (edge.on_boundary()) border_.push_back({edge.vertex[0], edge.vertex[1]});
@@ -48,9 +48,9 @@ Eigen::VectorXd ClampedSheet::start(const Vec2& displacement) const {
 
 double ClampedSheet::mid_width(const Eigen::VectorXd& x) const {
     Vec2 ends = Vec2::Zero();
-    for (std::size_t v = 0; v < fixed_clamp_.size(); ++v) {
-        if (fixed_clamp_[v]) ends[0] = x[3 * v];
-        if (moving_clamp_[v]) ends[1] = x[3 * v];
+    for (Eigen::Index v = 0; v < std::ssize(fixed_clamp_); ++v) {
+        if (fixed_clamp_[v] != 0) ends[0] = x[3 * v];
+        if (moving_clamp_[v] != 0) ends[1] = x[3 * v];
     }
     const double middle = ends.mean();
     double low = infinity;
