@@ -56,6 +56,7 @@ int run(int count, char** arguments) {
     ruche::add_check(program, action);
     ruche::add_pattern(program, action);
     ruche::add_bench(program, action);
+    ruche::add_calibrate(program, action);
     ruche::add_cards(program, action);
     ruche::add_template(program, action);
     check_verbs(&program, count, arguments);
