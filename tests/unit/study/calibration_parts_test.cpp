@@ -77,7 +77,7 @@ TEST_CASE("bending fit: cantilevers of one stiffness give it back, and those of 
     const double weight = density * 9.80665e-6;
     const auto test_of = [&](double angle, double stiffness) {
         CantileverTest test{.angle_deg = angle};
-        for (const double length : {60.0, 90.0, 120.0, 150.0}) {
+        for (const double length : {20.0, 30.0, 40.0, 50.0}) {
             const Cantilever c = cantilever(weight * std::pow(length, 3.0) / stiffness);
             test.length_mm.push_back(length);
             test.x_mm.push_back(length * c.reach);

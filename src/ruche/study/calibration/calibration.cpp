@@ -83,7 +83,7 @@ class Calibrator {
                                           measured_values(result_).values.at("fabric_areal_density").value);
         warn_of_bending();
         if (!result_.shear.empty())
-            result_.shear_modulus = shear_modulus(result_.shear, std::vector<double>(result_.shear.size(), 1.0));
+            result_.shear_modulus = mean_slope_of(result_.shear);
     }
 
     void warn_of_bending() {
@@ -146,6 +146,7 @@ class Calibrator {
         set.fabric_modulus = fabric_modulus(set.curves, m, set.prestretch);
         warn_of_fit(set);
         compare_moduli(set);
+        if (campaign_.options.mode == FitMode::joint && !result_.shear.empty()) compare_shear(set);
     }
 
     void fit_paper(CalibratedSet& set, const Material& start) {
@@ -274,6 +275,17 @@ class Calibrator {
                         "curvature of {:.4g}/mm with the one and {:.4g}/mm with the other; a printed sample decides",
                         set.prestretch, set.fit.material.fabric_youngs_modulus, ratio, set.fabric_modulus.working,
                         thickness, set.curvature_used, set.curvature_working));
+    }
+
+    /// The shear tests against alpha_3 of the tension tests.
+    void compare_shear(CalibratedSet& set) {
+        set.sheared_alpha_3 = corrected_shear_modulus(result_.shear, set.fit.material);
+        const double ratio = set.sheared_alpha_3->value / set.fit.material.alpha_3;
+        if (ratio > 0.8 && ratio < 1.25) return;
+        result_.warnings.push_back(
+            fmt::format("pre-stretch {:g}: the shear tests give alpha_3 = {:.4g} MPa, the tension tests {:.4g} MPa; "
+                        "the card has the latter",
+                        set.prestretch, set.sheared_alpha_3->value, set.fit.material.alpha_3));
     }
 
     Calibration& result_;

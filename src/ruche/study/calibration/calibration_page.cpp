@@ -98,6 +98,11 @@ std::string fit_text(const CalibratedSet& set, FitMode mode) {
         }
         html += "a change of one is made up for by the other.</p>\n";
     }
+    if (set.sheared_alpha_3)
+        html += fmt::format("<p>The shear tests, the free sides of their samples simulated, give alpha_3 = {:.4g} "
+                            "({:.4g} to {:.4g}) MPa; the tension tests {:.4g} MPa.</p>\n",
+                            set.sheared_alpha_3->value, set.sheared_alpha_3->low, set.sheared_alpha_3->high,
+                            set.fit.material.alpha_3);
     const FabricModulus& m = set.fabric_modulus;
     html += fmt::format(
         "<p>Young's modulus of the fabric under plastic: secant {:.4g} ± {:.2g}, tangent {:.4g} ± {:.2g} (spread over "

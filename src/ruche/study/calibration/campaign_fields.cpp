@@ -100,7 +100,7 @@ std::span<const Field<ShearTest>> fields<ShearTest>() {
     using T = ShearTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
-        {"angle_deg", &T::angle_deg, "deg", -180, 180, "Angle of the clamps from the fabric's first axis."},
+        {"angle_deg", &T::angle_deg, "deg", -180, 180, "Angle from the fabric's first axis to the direction from clamp to clamp."},
         {"height_mm", &T::height_mm, "mm", 1, most_mm, "Distance of the two clamps."},
         {"width_mm", &T::width_mm, "mm", 1, most_mm, "Width of the sample along the clamps."},
         {"largest_strain", &T::largest_strain, "", 0, 2,

@@ -8,6 +8,7 @@
 
 #include "ruche/study/calibration/cycles.hpp"
 #include "ruche/study/calibration/statistics.hpp"
+#include "ruche/study/sheared_sample.hpp"
 
 namespace ruche {
 namespace {
@@ -103,20 +104,54 @@ ShearCurve read_shear_curve(const ShearTest& test, double thickness) {
     return curve;
 }
 
-ShearModulus shear_modulus(std::span<const ShearCurve> curves, std::span<const double> share) {
-    std::vector<double> values;
-    double variance = 0.0;
-    const auto count = static_cast<double>(curves.size());
-    for (std::size_t i = 0; i < curves.size(); ++i) {
-        values.push_back(curves[i].slope / share[i]);
-        variance += std::pow(curves[i].slope_error / share[i] / count, 2.0);
-    }
+namespace {
+
+/// Mean of values with standard errors along their own curves.
+ShearModulus mean_of(std::span<const double> values, std::span<const double> errors) {
     const Spread s = spread(values);
+    double variance = 0.0;
+    for (const double e : errors) variance += std::pow(e / s.count, 2.0);
     // Between two tests Student's t with one degree of freedom says next to nothing: twice the standard error.
-    const double between = s.count > 1 ? 2.0 * s.deviation / std::sqrt(count) : 0.0;
-    const double within = 1.96 * std::sqrt(variance);
-    const double half = std::max(between, within);
+    const double between = s.count > 1 ? 2.0 * s.deviation / std::sqrt(static_cast<double>(s.count)) : 0.0;
+    const double half = std::max(between, 1.96 * std::sqrt(variance));
     return {s.mean, std::max(s.mean - half, 0.0), s.mean + half};
+}
+
+/// Slope of the simulated sample's response over that of simple shear.
+double simulated_share(const ShearCurve& curve, const Material& material, double modulus) {
+    const ShearTest& test = curve.test;
+    const std::vector<double> shears = {0.25 * curve.range, 0.5 * curve.range, 0.75 * curve.range, curve.range};
+    const ShearedResponse response = simulate_sheared(
+        {.length_mm = test.height_mm, .width_mm = test.width_mm, .angle_deg = test.angle_deg}, material, shears);
+    std::vector<double> stress;
+    for (const double force : response.force_N)
+        stress.push_back(force / (test.width_mm * material.fabric_thickness));
+    if (!response.converged) return 1.0;
+    return fit_line(shears, stress).slope / modulus;
+}
+
+}  // namespace
+
+ShearModulus mean_slope_of(std::span<const ShearCurve> curves) {
+    std::vector<double> values, errors;
+    for (const ShearCurve& curve : curves) {
+        values.push_back(curve.slope);
+        errors.push_back(curve.slope_error);
+    }
+    return mean_of(values, errors);
+}
+
+ShearModulus corrected_shear_modulus(std::span<const ShearCurve> curves, const Material& m) {
+    const double own = 1.0 - m.neo_hookean_share;
+    const double other =
+        m.neo_hookean_share * m.fabric_youngs_modulus / (2.0 * (1.0 + m.fabric_poissons_ratio));
+    std::vector<double> values, errors;
+    for (const ShearCurve& curve : curves) {
+        const double share = simulated_share(curve, m, own * m.alpha_3 + other);
+        values.push_back((curve.slope / share - other) / own);
+        errors.push_back(curve.slope_error / share / own);
+    }
+    return mean_of(values, errors);
 }
 
 }  // namespace ruche

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "ruche/material/material.hpp"
 #include "ruche/study/calibration/campaign.hpp"
 
 namespace ruche {
@@ -26,12 +26,18 @@ struct ShearCurve {
 /// least a fifth of what was measured; a test may state it.
 [[nodiscard]] ShearCurve read_shear_curve(const ShearTest& test, double fabric_thickness_mm);
 
-/// The shear modulus of several tests: the mean of their slopes, each over what the sample's free sides take away
-/// (`share`, the simulated force over that of simple shear; 1 for the paper's reading).
+/// alpha_3 from several tests, with a 95 % interval from the scatter along the curves and between them.
 struct ShearModulus {
     double value = 0.0;
-    double low = 0.0, high = 0.0;  ///< 95 % interval from the scatter along the curves and between them
+    double low = 0.0, high = 0.0;
 };
-[[nodiscard]] ShearModulus shear_modulus(std::span<const ShearCurve> curves, std::span<const double> share);
+
+/// The paper's reading: alpha_3 is the mean slope.
+[[nodiscard]] ShearModulus mean_slope_of(std::span<const ShearCurve> curves);
+
+/// With what the sample's free sides take away and the Neo-Hookean share eps: the slope k of a test is
+/// k = share ((1 - eps) alpha_3 + eps mu), where share is the slope of the simulated sample (its measured size, the
+/// rest of the material as given) over that of simple shear.
+[[nodiscard]] ShearModulus corrected_shear_modulus(std::span<const ShearCurve> curves, const Material& material);
 
 }  // namespace ruche
