@@ -29,7 +29,8 @@ static void print_card(const Calibration& result) {
         for (const Field<Material>& field : fields<Material>()) {
             const CardValue& value = set.values.at(std::string(bare_name(info(field))));
             const std::string interval =
-                value.interval ? fmt::format("[{:.5g}, {:.5g}]", value.interval->at(0), value.interval->at(1)) : "";
+                value.interval ? fmt::format("[{:.5g}, {:.5g}]", value.interval->at(0), value.interval->at(1))
+                               : "";
             const std::string source = value.source.substr(0, value.source.find(';'));
             fmt::print("  {:30} {:>12.6g}  {:26} {}\n", field.key, value.value, interval, source);
         }
@@ -41,9 +42,9 @@ static ExitCode run(const CalibrateArguments& arguments) {
     Campaign campaign = read_campaign(arguments.campaign);
     if (!arguments.mode.empty())
         campaign.options.mode = arguments.mode == "paper" ? FitMode::paper : FitMode::joint;
-    const std::string card =
-        arguments.card.empty() ? std::filesystem::path(arguments.campaign).stem().string() + "-card.toml"
-                               : arguments.card;
+    const std::string card = arguments.card.empty()
+                                 ? std::filesystem::path(arguments.campaign).stem().string() + "-card.toml"
+                                 : arguments.card;
     const std::string report = arguments.report.empty()
                                    ? std::filesystem::path(card).replace_extension(".html").string()
                                    : arguments.report;

@@ -4,7 +4,8 @@
 
 namespace ruche {
 
-/// The parameters of the fabric's law that tension tests may determine, in the order of the derivatives below.
+/// The parameters of the fabric's law that tension tests may determine, in the order of the derivatives
+/// below.
 inline constexpr std::size_t law_parameter_count = 8;
 inline constexpr std::array<double Material::*, law_parameter_count> law_parameters = {
     &Material::alpha_1, &Material::alpha_2, &Material::alpha_3, &Material::beta_1,

@@ -114,10 +114,11 @@ TEST_CASE("card file: mistakes are named with file, line and key") {
 }
 
 TEST_CASE("card: files of a value are kept, and its warnings go with every material made from it") {
-    const CardFile file("card.toml", "name = \"knit\"\nwarnings = [\"E_f is odd\"]\n[[set]]\nprestretch = 1.5\n" +
-                                         every_value_but("alpha_1_mpa") +
-                                         alpha_1(0.1, ", files = [\"a.csv sha256:00\"]"));
-    CHECK(load_card(file.path).sets.at(0).values.at("alpha_1").files == std::vector<std::string>{"a.csv sha256:00"});
+    const CardFile file("card.toml",
+                        "name = \"knit\"\nwarnings = [\"E_f is odd\"]\n[[set]]\nprestretch = 1.5\n" +
+                            every_value_but("alpha_1_mpa") + alpha_1(0.1, ", files = [\"a.csv sha256:00\"]"));
+    CHECK(load_card(file.path).sets.at(0).values.at("alpha_1").files ==
+          std::vector<std::string>{"a.csv sha256:00"});
     CHECK(resolve_card(file.path, {1.5, 1.5}).warnings == std::vector<std::string>{"card knit: E_f is odd"});
 }
 

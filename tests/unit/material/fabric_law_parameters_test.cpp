@@ -6,7 +6,8 @@
 
 using namespace ruche;
 
-TEST_CASE("stress by parameter: agrees with differences of the law, which shrink with the square of the step") {
+TEST_CASE(
+    "stress by parameter: agrees with differences of the law, which shrink with the square of the step") {
     const Vec3 strains[] = {Vec3(0.3, -0.1, 0.15), Vec3(0.945, -0.12, 0.02), Vec3(0.2, 0.9635, -0.1),
                             Vec3(-0.2, 0.05, 0.3)};
     for (const bool tensor_shear : {false, true}) {

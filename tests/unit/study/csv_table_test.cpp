@@ -26,19 +26,25 @@ std::string utf16(const std::string& ascii) {
 
 const Dialect dialects[] = {
     {"plain", "time_s,displacement_mm,force_N\n0,0,0.5\n1,1.25,1000.5\n2,2.5,2\n"},
-    {"Bluehill", "\"Results Table 1\"\r\n\"Operator\",\"A, B\"\r\n\r\n\"Time\",\"Extension\",\"Load\"\r\n"
-                 "\"(s)\",\"(mm)\",\"(N)\"\r\n\"0.0\",\"0.000\",\"0.5\"\r\n\"1.0\",\"1.250\",\"1,000.5\"\r\n"
-                 "\"2.0\",\"2.5\",\"2.0\"\r\n"},
-    {"Bluehill with decimal commas", "\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(N)\"\n"
-                                     "\"0,0\",\"0,000\",\"0,5\"\n\"1,0\",\"1,250\",\"1000,5\"\n\"2,0\",\"2,5\",\"2,0\"\n"},
-    {"Zwick in Latin-1", "\"Pr\xFC" "fzeit\";\"Standardweg\";\"Standardkraft\"\n\"s\";\"mm\";\"N\"\n0,0;0,0;0,5\n"
-                         "1,0;1,25;1000,5\n2,0;2,5;2,0\n"},
-    {"UTF-8 with a mark and thousands", "\xEF\xBB\xBFZeit [s];Traversenweg [mm];Kraft [N]\n0;0;0,5\n1;1,25;1.000,5\n2;2,5;2\n"},
+    {"Bluehill",
+     "\"Results Table 1\"\r\n\"Operator\",\"A, B\"\r\n\r\n\"Time\",\"Extension\",\"Load\"\r\n"
+     "\"(s)\",\"(mm)\",\"(N)\"\r\n\"0.0\",\"0.000\",\"0.5\"\r\n\"1.0\",\"1.250\",\"1,000.5\"\r\n"
+     "\"2.0\",\"2.5\",\"2.0\"\r\n"},
+    {"Bluehill with decimal commas",
+     "\"Time\",\"Extension\",\"Load\"\n\"(s)\",\"(mm)\",\"(N)\"\n"
+     "\"0,0\",\"0,000\",\"0,5\"\n\"1,0\",\"1,250\",\"1000,5\"\n\"2,0\",\"2,5\",\"2,0\"\n"},
+    {"Zwick in Latin-1",
+     "\"Pr\xFC"
+     "fzeit\";\"Standardweg\";\"Standardkraft\"\n\"s\";\"mm\";\"N\"\n0,0;0,0;0,5\n"
+     "1,0;1,25;1000,5\n2,0;2,5;2,0\n"},
+    {"UTF-8 with a mark and thousands",
+     "\xEF\xBB\xBFZeit [s];Traversenweg [mm];Kraft [N]\n0;0;0,5\n1;1,25;1.000,5\n2;2,5;2\n"},
     {"UTF-16", utf16("Time (s)\tExtension (mm)\tLoad (N)\r\n0\t0\t0.5\r\n1\t1.25\t1000.5\r\n2\t2.5\t2\r\n")},
     {"blanks and a comment", "# by hand\nt d F\n0 0 0.5\n1 1.25 1000.5\n2 2.5 2\n"},
     {"kilonewton and centimetres", "Load (kN);Extension (cm)\n0.0005;0\n1.0005;0.125\n0.002;0.25\n"},
     {"per cent of 100 mm", "Dehnung in %;Kraft in N\n0;0,5\n1,25;1000,5\n2,5;2\n"},
-    {"a delimiter at each line's end", "Time (s);Extension (mm);Load (N);\n0;0;0.5;\n1;1.25;1000.5;\n2;2.5;2;\n"},
+    {"a delimiter at each line's end",
+     "Time (s);Extension (mm);Load (N);\n0;0;0.5;\n1;1.25;1000.5;\n2;2.5;2;\n"},
     {"French", "Temps (s)\tD\xC3\xA9placement (mm)\tForce (N)\n0\t0\t0,5\n1\t1,25\t1000,5\n2\t2,5\t2\n"},
 };
 
@@ -61,7 +67,8 @@ TEST_CASE("csv table: the same rows in every dialect give the same record") {
 TEST_CASE("csv table: a table of hung masses and lengths becomes force and displacement") {
     const std::string table =
         "mass_g,length_mm,width_mm,direction\n0,100,20,loading\n100,120,18.5,loading\n50,111,19,unloading\n";
-    const TestRecord record = read_record(parse_csv(table, "test.csv"), {.length_mm = 100.0, .width_mm = 20.0});
+    const TestRecord record =
+        read_record(parse_csv(table, "test.csv"), {.length_mm = 100.0, .width_mm = 20.0});
     REQUIRE(record.size() == 3);
     CHECK(record.force[1] == doctest::Approx(0.980665).epsilon(1e-12));
     CHECK(record.displacement[2] == doctest::Approx(11.0).epsilon(1e-12));

@@ -41,8 +41,8 @@ TEST_CASE("elastica: light strips bend as beams, y = Gamma / 8, with an error of
 }
 
 TEST_CASE("elastica: Peirce's cantilever formula holds near his working angle of 43 degrees") {
-    // Peirce 1930: the bending length c = (k_B/w)^(1/3) is L (cos(theta/2) / (8 tan theta))^(1/3) for a chord at
-    // theta below the horizontal, an empirical formula good to about one per cent up to 60 degrees.
+    // Peirce 1930: the bending length c = (k_B/w)^(1/3) is L (cos(theta/2) / (8 tan theta))^(1/3) for a chord
+    // at theta below the horizontal, an empirical formula good to about one per cent up to 60 degrees.
     for (const double degrees : {20.0, 30.0, 41.5, 43.0, 50.0}) {
         const double angle = degrees * std::numbers::pi / 180.0;
         const double peirce = std::cbrt(std::cos(0.5 * angle) / (8.0 * std::tan(angle)));

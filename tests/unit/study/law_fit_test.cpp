@@ -125,7 +125,9 @@ TEST_CASE("alpha from alpha~: undoes its definition") {
     }
 }
 
-TEST_CASE("joint fit: noise of one per cent leaves the truth inside nearly all intervals, and the curves within one per cent") {
+TEST_CASE(
+    "joint fit: noise of one per cent leaves the truth inside nearly all intervals, and the curves within "
+    "one per cent") {
     const Material truth;
     int inside = 0;
     int count = 0;
@@ -154,7 +156,8 @@ TEST_CASE("joint fit: noise of one per cent leaves the truth inside nearly all i
     CHECK(inside >= 26);
 }
 
-TEST_CASE("joint fit: a limit far beyond the data is called unidentifiable, and its interval holds the truth") {
+TEST_CASE(
+    "joint fit: a limit far beyond the data is called unidentifiable, and its interval holds the truth") {
     // Up to a stretch of 1.15 the logarithm is a straight line: gamma and beta cannot be told from alpha.
     const Material truth;
     std::vector<LawCurve> curves = curves_of(truth, 1.15, 60);

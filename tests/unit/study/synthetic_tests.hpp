@@ -14,7 +14,8 @@ inline constexpr double seven_angles[] = {0, 15, 30, 45, 60, 75, 90};
 /// Unloading from a stretch down to nearly one, with widths.
 LawCurve exact_curve(const Material& material, double angle_deg, double largest_stretch = 1.7, int rows = 60);
 
-/// Normally distributed noise of a fraction of the curve's largest stress, and of its largest transverse strain.
+/// Normally distributed noise of a fraction of the curve's largest stress, and of its largest transverse
+/// strain.
 void add_noise(LawCurve& curve, double fraction, std::uint64_t seed);
 
 /// A machine's CSV of one cycle of such a test on a sample of 110 x 20 mm: loading is a tenth stiffer.

@@ -38,7 +38,8 @@ class Calibrator {
         thickness_ = thickness.value;
         if (thickness.source.starts_with("assumed"))
             result_.warnings.push_back(
-                "the fabric's thickness was not measured: stiffness per width is right, moduli and curvature are not");
+                "the fabric's thickness was not measured: stiffness per width is right, moduli and curvature "
+                "are not");
         read_tests();
         const CardSet measured = measured_values(result_);
         for (CalibratedSet& set : result_.sets) {
@@ -82,17 +83,17 @@ class Calibrator {
             result_.bending = fit_bending(campaign_.cantilever,
                                           measured_values(result_).values.at("fabric_areal_density").value);
         warn_of_bending();
-        if (!result_.shear.empty())
-            result_.shear_modulus = mean_slope_of(result_.shear);
+        if (!result_.shear.empty()) result_.shear_modulus = mean_slope_of(result_.shear);
     }
 
     void warn_of_bending() {
         if (!result_.bending || result_.bending->groups.size() < 2) return;
         const double ratio = result_.bending->largest / result_.bending->smallest;
         if (ratio > 2.0)
-            result_.warnings.push_back(fmt::format(
-                "k_B differs by a factor of {:.2g} between orientations and sides; the model knows their mean only",
-                ratio));
+            result_.warnings.push_back(
+                fmt::format("k_B differs by a factor of {:.2g} between orientations and sides; the model "
+                            "knows their mean only",
+                            ratio));
     }
 
     /// What the fit takes as given.
@@ -182,8 +183,9 @@ class Calibrator {
         while (set.grip_rounds < most_rounds && has_grips(set)) {
             const Material before = set.fit.material;
             ++set.grip_rounds;
-            control_.say({"fit", -1.0, fmt::format("pre-stretch {:g}: simulating the clamped samples, round {}",
-                                                   set.prestretch, set.grip_rounds)});
+            control_.say({"fit", -1.0,
+                          fmt::format("pre-stretch {:g}: simulating the clamped samples, round {}",
+                                      set.prestretch, set.grip_rounds)});
             correct_for_grips(set.curves, set.tests, before, campaign_.options.element_size_mm);
             set.fit = fit_law(set.curves, options);
             if (largest_change(before, set.fit.material) < 1e-3) break;
@@ -221,22 +223,25 @@ class Calibrator {
             found += fmt::format("{}{:g}", found.empty() ? "" : ", ", test.test.angle_deg);
         }
         if (!axis[0] || !axis[1])
-            throw InputError({.file = campaign_.file, .key = "tension"},
-                             fmt::format("there is no tension test along the fabric's {} axis (angle_deg near {}); "
-                                         "there are {} deg at a pre-stretch of {:g}",
-                                         axis[0] ? "second" : "first", axis[0] ? 90 : 0, found, set.prestretch),
-                             "Both axes must be pulled; an angle between them, 45 deg say, determines alpha_3.");
+            throw InputError(
+                {.file = campaign_.file, .key = "tension"},
+                fmt::format("there is no tension test along the fabric's {} axis (angle_deg near {}); "
+                            "there are {} deg at a pre-stretch of {:g}",
+                            axis[0] ? "second" : "first", axis[0] ? 90 : 0, found, set.prestretch),
+                "Both axes must be pulled; an angle between them, 45 deg say, determines alpha_3.");
         if (!between && campaign_.options.mode == FitMode::joint)
-            throw InputError({.file = campaign_.file, .key = "tension"},
-                             fmt::format("no tension test between the axes: there are {} deg at a pre-stretch of "
-                                         "{:g}, which say nothing about alpha_3",
-                                         found, set.prestretch),
-                             "Add a test at 45 deg, or take mode = \"paper\" with a shear test.");
+            throw InputError(
+                {.file = campaign_.file, .key = "tension"},
+                fmt::format("no tension test between the axes: there are {} deg at a pre-stretch of "
+                            "{:g}, which say nothing about alpha_3",
+                            found, set.prestretch),
+                "Add a test at 45 deg, or take mode = \"paper\" with a shear test.");
     }
 
     void warn_of_fit(const CalibratedSet& set) {
         const std::string at = fmt::format("pre-stretch {:g}: ", set.prestretch);
-        if (!set.fit.converged) result_.warnings.push_back(at + "the fit did not converge: " + set.fit.message);
+        if (!set.fit.converged)
+            result_.warnings.push_back(at + "the fit did not converge: " + set.fit.message);
         for (std::size_t i = 0; i < set.curves.size(); ++i)
             if (set.fit.rms[i] > 0.05)
                 result_.warnings.push_back(
@@ -249,15 +254,16 @@ class Calibrator {
         const Material& m = set.fit.material;
         const double limit = std::sqrt(1.0 + 2.0 * std::min(m.gamma_1, m.gamma_2));
         if (limit <= set.prestretch)
-            result_.warnings.push_back(
-                fmt::format("{}the fitted fabric locks at a stretch of {:.4g}, below the pre-stretch: measure up to "
-                            "the pre-stretch and a little beyond",
-                            at, limit));
+            result_.warnings.push_back(fmt::format(
+                "{}the fitted fabric locks at a stretch of {:.4g}, below the pre-stretch: measure up to "
+                "the pre-stretch and a little beyond",
+                at, limit));
     }
 
     static std::string parameter_name(std::size_t parameter) {
         constexpr std::array<std::string_view, law_parameter_count> names = {
-            "alpha_1", "alpha_2", "alpha_3", "beta_1", "beta_2", "gamma_1", "gamma_2", "fabric_poissons_ratio"};
+            "alpha_1", "alpha_2", "alpha_3", "beta_1",
+            "beta_2",  "gamma_1", "gamma_2", "fabric_poissons_ratio"};
         return std::string(names[parameter]);
     }
 
@@ -269,12 +275,12 @@ class Calibrator {
         set.curvature_working = strip_curvature(m, set.prestretch, thickness);
         const double ratio = set.fit.material.fabric_youngs_modulus / set.fabric_modulus.working;
         if (ratio < 2.0 && ratio > 0.5) return;
-        result_.warnings.push_back(
-            fmt::format("pre-stretch {:g}: E_f = {:.3g} MPa pulls {:.2g} times as hard as the fabric's own law at the "
-                        "pre-stretch (working modulus {:.3g} MPa). A narrow strip with {:g} mm of plastic gets a "
-                        "curvature of {:.4g}/mm with the one and {:.4g}/mm with the other; a printed sample decides",
-                        set.prestretch, set.fit.material.fabric_youngs_modulus, ratio, set.fabric_modulus.working,
-                        thickness, set.curvature_used, set.curvature_working));
+        result_.warnings.push_back(fmt::format(
+            "pre-stretch {:g}: E_f = {:.3g} MPa pulls {:.2g} times as hard as the fabric's own law at the "
+            "pre-stretch (working modulus {:.3g} MPa). A narrow strip with {:g} mm of plastic gets a "
+            "curvature of {:.4g}/mm with the one and {:.4g}/mm with the other; a printed sample decides",
+            set.prestretch, set.fit.material.fabric_youngs_modulus, ratio, set.fabric_modulus.working,
+            thickness, set.curvature_used, set.curvature_working));
     }
 
     /// The shear tests against alpha_3 of the tension tests.
@@ -282,10 +288,10 @@ class Calibrator {
         set.sheared_alpha_3 = corrected_shear_modulus(result_.shear, set.fit.material);
         const double ratio = set.sheared_alpha_3->value / set.fit.material.alpha_3;
         if (ratio > 0.8 && ratio < 1.25) return;
-        result_.warnings.push_back(
-            fmt::format("pre-stretch {:g}: the shear tests give alpha_3 = {:.4g} MPa, the tension tests {:.4g} MPa; "
-                        "the card has the latter",
-                        set.prestretch, set.sheared_alpha_3->value, set.fit.material.alpha_3));
+        result_.warnings.push_back(fmt::format(
+            "pre-stretch {:g}: the shear tests give alpha_3 = {:.4g} MPa, the tension tests {:.4g} MPa; "
+            "the card has the latter",
+            set.prestretch, set.sheared_alpha_3->value, set.fit.material.alpha_3));
     }
 
     Calibration& result_;

@@ -25,9 +25,10 @@ struct CalibratedSet {
     std::vector<double> poissons_ratios;  ///< eq. 9, per test; NaN without widths
     FabricModulus fabric_modulus;
     std::optional<ShearModulus> sheared_alpha_3;  ///< of the shear tests, their free sides simulated
-    int grip_rounds = 0;            ///< how often the clamped samples were simulated
-    double largest_grip_effect = 0.0;  ///< largest deviation of the force ratio from one
-    double curvature_used = 0.0, curvature_working = 0.0;  ///< 1/mm, of a strip 0.6 mm thick with E_f as used, as working
+    int grip_rounds = 0;                          ///< how often the clamped samples were simulated
+    double largest_grip_effect = 0.0;             ///< largest deviation of the force ratio from one
+    double curvature_used = 0.0,
+           curvature_working = 0.0;  ///< 1/mm, of a strip 0.6 mm thick with E_f as used, as working
 };
 
 /// How the radius of a printed sample came out.
@@ -57,8 +58,8 @@ struct Calibration {
     std::vector<std::string> warnings;
 };
 
-/// Reads all files of a campaign, fits, and makes the card. Throws InputError for what cannot be used; what is
-/// doubtful is a warning, which the card repeats.
+/// Reads all files of a campaign, fits, and makes the card. Throws InputError for what cannot be used; what
+/// is doubtful is a warning, which the card repeats.
 [[nodiscard]] Calibration calibrate(const Campaign& campaign, const Control& control = {});
 
 }  // namespace ruche

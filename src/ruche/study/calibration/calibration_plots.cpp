@@ -37,11 +37,14 @@ std::string cycle_plots(const CalibratedSet& set) {
     std::string svg;
     for (const TensionCurve& test : set.tests) {
         const TestRecord& r = test.record;
-        PlotSeries used{.label = test.test.branch == Branch::unloading ? "unloading branch used" : "loading branch used",
-                        .colour = "#009e73", .size = 2.2};
+        PlotSeries used{
+            .label = test.test.branch == Branch::unloading ? "unloading branch used" : "loading branch used",
+            .colour = "#009e73",
+            .size = 2.2};
         const Cycle& cycle = test.cycles[test.cycle];
         const bool unloading = test.test.branch == Branch::unloading;
-        for (std::size_t i = unloading ? cycle.peak : cycle.begin; i < (unloading ? cycle.end : cycle.peak + 1); ++i) {
+        for (std::size_t i = unloading ? cycle.peak : cycle.begin;
+             i < (unloading ? cycle.end : cycle.peak + 1); ++i) {
             used.x.push_back(r.displacement[i]);
             used.y.push_back(r.force[i]);
         }
@@ -49,19 +52,31 @@ std::string cycle_plots(const CalibratedSet& set) {
                          .x_label = "displacement (mm)",
                          .y_label = "force (N)",
                          .series = {{.label = fmt::format("all {} cycles", test.cycles.size()),
-                                     .colour = "#999999", .x = r.displacement, .y = r.force, .size = 1.0},
+                                     .colour = "#999999",
+                                     .x = r.displacement,
+                                     .y = r.force,
+                                     .size = 1.0},
                                     used}});
     }
     return svg;
 }
 
 std::string law_plots(const CalibratedSet& set) {
-    Plot stress{.title = "Stress over strain, measured and fitted", .x_label = "Green strain along the pull",
-                .y_label = "second Piola-Kirchhoff stress (kPa)", .width_px = 620, .height_px = 430};
-    Plot width{.title = "Width", .x_label = "Green strain along the pull", .y_label = "Green strain across",
-               .width_px = 460, .height_px = 430};
-    Plot residual{.title = "What the fit leaves", .x_label = "Green strain along the pull",
-                  .y_label = "stress, measured - fitted (kPa)", .width_px = 460, .height_px = 430};
+    Plot stress{.title = "Stress over strain, measured and fitted",
+                .x_label = "Green strain along the pull",
+                .y_label = "second Piola-Kirchhoff stress (kPa)",
+                .width_px = 620,
+                .height_px = 430};
+    Plot width{.title = "Width",
+               .x_label = "Green strain along the pull",
+               .y_label = "Green strain across",
+               .width_px = 460,
+               .height_px = 430};
+    Plot residual{.title = "What the fit leaves",
+                  .x_label = "Green strain along the pull",
+                  .y_label = "stress, measured - fitted (kPa)",
+                  .width_px = 460,
+                  .height_px = 430};
     for (std::size_t i = 0; i < set.curves.size(); ++i) {
         const LawCurve& curve = set.curves[i];
         const LawPrediction fit = predict(set.fit.material, curve);
@@ -73,7 +88,8 @@ std::string law_plots(const CalibratedSet& set) {
         stress.series.push_back(
             {.label = fmt::format("{:g}°", curve.angle_deg), .colour = colour, .x = strain, .y = fitted});
         if (!curve.transverse.empty()) {
-            width.series.push_back({.colour = colour, .x = strain, .y = curve.transverse, .dots = true, .size = 1.0});
+            width.series.push_back(
+                {.colour = colour, .x = strain, .y = curve.transverse, .dots = true, .size = 1.0});
             width.series.push_back({.colour = colour, .x = strain, .y = fit.transverse});
         }
         std::vector<double> left;
@@ -84,14 +100,18 @@ std::string law_plots(const CalibratedSet& set) {
 }
 
 std::string shear_plots(const Calibration& calibration) {
-    Plot plot{.title = "Shear", .x_label = "shear strain 2 E12", .y_label = "shear stress (kPa)", .width_px = 620};
+    Plot plot{
+        .title = "Shear", .x_label = "shear strain 2 E12", .y_label = "shear stress (kPa)", .width_px = 620};
     for (std::size_t i = 0; i < calibration.shear.size(); ++i) {
         const ShearCurve& curve = calibration.shear[i];
-        plot.series.push_back({.colour = plot_colour(i), .x = curve.strain, .y = scaled(curve.stress, kilo),
-                               .dots = true, .size = 1.2});
+        plot.series.push_back({.colour = plot_colour(i),
+                               .x = curve.strain,
+                               .y = scaled(curve.stress, kilo),
+                               .dots = true,
+                               .size = 1.2});
         plot.series.push_back(
-            {.label = fmt::format("{:g}°: slope {:.4g} kPa up to {:.2g}", curve.test.angle_deg, kilo * curve.slope,
-                                  curve.range),
+            {.label = fmt::format("{:g}°: slope {:.4g} kPa up to {:.2g}", curve.test.angle_deg,
+                                  kilo * curve.slope, curve.range),
              .colour = plot_colour(i),
              .x = {0.0, curve.range},
              .y = {kilo * curve.intercept, kilo * (curve.intercept + curve.slope * curve.range)}});
@@ -101,8 +121,13 @@ std::string shear_plots(const Calibration& calibration) {
 
 std::string bending_plots(const Calibration& calibration) {
     if (!calibration.bending) return {};
-    Plot plot{.title = "Cantilevers on the master curve", .x_label = "Γ = weight per area · L³ / k_B",
-              .y_label = "y/x", .log_x = true, .log_y = true, .width_px = 620, .height_px = 400};
+    Plot plot{.title = "Cantilevers on the master curve",
+              .x_label = "Γ = weight per area · L³ / k_B",
+              .y_label = "y/x",
+              .log_x = true,
+              .log_y = true,
+              .width_px = 620,
+              .height_px = 400};
     double low = 1e4;
     double high = 1e-6;
     for (const BendingGroup& group : calibration.bending->groups) {
@@ -125,7 +150,9 @@ std::string bending_plots(const Calibration& calibration) {
         const BendingGroup& group = calibration.bending->groups[i];
         PlotSeries points{.label = fmt::format("{:g}°, {} up: k_B = {:.4g} N mm", group.angle_deg, group.side,
                                                group.stiffness),
-                          .colour = plot_colour(i), .dots = true, .size = 3.0};
+                          .colour = plot_colour(i),
+                          .dots = true,
+                          .size = 3.0};
         for (const BendingGroup::Point& p : group.points) {
             points.x.push_back(p.load);
             points.y.push_back(p.aspect);
@@ -142,8 +169,12 @@ std::string plastic_plots(const Calibration& calibration) {
         svg += svg_plot({.title = "Plastic: " + file_name(curve.test.file),
                          .x_label = "engineering strain",
                          .y_label = "engineering stress (MPa)",
-                         .series = {{.label = "measured", .colour = "#0072b2", .x = curve.strain, .y = curve.stress,
-                                     .dots = true, .size = 1.3},
+                         .series = {{.label = "measured",
+                                     .colour = "#0072b2",
+                                     .x = curve.strain,
+                                     .y = curve.stress,
+                                     .dots = true,
+                                     .size = 1.3},
                                     {.label = fmt::format("tangent at zero: {:.4g} MPa", curve.modulus),
                                      .colour = "#d55e00",
                                      .x = {0.0, end},

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 
 #include "ruche/core/table_reader.hpp"
@@ -75,12 +76,17 @@ class Reader {
         TableReader reader(*node, "fabric");
         FabricMeasurements& f = campaign_.fabric;
         reader.read(f);
-        f.thickness_mm = numbers_of(reader, {.key = "thickness_mm", .low = 1e-3, .high = 20,
+        f.thickness_mm = numbers_of(reader, {.key = "thickness_mm",
+                                             .low = 1e-3,
+                                             .high = 20,
                                              .meaning = "Readings of the relaxed fabric's thickness."});
-        f.areal_density_kg_per_m2 =
-            numbers_of(reader, {.key = "areal_density_kg_per_m2", .low = 1e-3, .high = 20,
-                                .meaning = "Mass per area of the relaxed fabric."});
-        f.sample_mass_g = numbers_of(reader, {.key = "sample_mass_g", .low = 1e-6, .high = 1e5,
+        f.areal_density_kg_per_m2 = numbers_of(reader, {.key = "areal_density_kg_per_m2",
+                                                        .low = 1e-3,
+                                                        .high = 20,
+                                                        .meaning = "Mass per area of the relaxed fabric."});
+        f.sample_mass_g = numbers_of(reader, {.key = "sample_mass_g",
+                                              .low = 1e-6,
+                                              .high = 1e5,
                                               .meaning = "Masses of pieces of sample_area_mm2."});
         reader.finish();
         if (!f.sample_mass_g.empty() && f.sample_area_mm2 <= 0.0)
@@ -97,7 +103,9 @@ class Reader {
         TableReader reader(*node, "plastic");
         reader.read(campaign_.plastic);
         campaign_.plastic.thickness_mm =
-            numbers_of(reader, {.key = "thickness_mm", .low = 1e-3, .high = 20,
+            numbers_of(reader, {.key = "thickness_mm",
+                                .low = 1e-3,
+                                .high = 20,
                                 .meaning = "Readings of the printed plastic's thickness."});
         reader.finish();
     }
@@ -120,7 +128,8 @@ class Reader {
     }
 
     void read_tension(const Node& node) {
-        TensionTest test{.prestretch = campaign_.options.prestretch};
+        TensionTest test;
+        test.prestretch = campaign_.options.prestretch;
         TableReader reader = begin(node, "tension", campaign_.tension.size() + 1, test);
         require(reader, {"file", "angle_deg", "length_mm", "width_mm"});
         require_file(test, folder_, reader);
@@ -167,16 +176,17 @@ class Reader {
                              fmt::format("\"{}\" is none of front, back", test.side));
         if (test.x_mm.size() != test.length_mm.size() || test.y_mm.size() != test.length_mm.size())
             throw InputError(reader.place_of_key("length_mm"),
-                             fmt::format("{} lengths, {} x and {} y", test.length_mm.size(),
-                                         test.x_mm.size(), test.y_mm.size()),
+                             fmt::format("{} lengths, {} x and {} y", test.length_mm.size(), test.x_mm.size(),
+                                         test.y_mm.size()),
                              "Each overhang has one x and one y.");
         for (std::size_t i = 0; i < test.x_mm.size(); ++i) {
             if (std::hypot(test.x_mm[i], test.y_mm[i]) <= 1.05 * test.length_mm[i]) continue;
-            throw InputError(reader.place_of_key("x_mm"),
-                             fmt::format("the tip at ({}, {}) mm is farther from the clamp than the strip of {} "
-                                         "mm is long",
-                                         test.x_mm[i], test.y_mm[i], test.length_mm[i]),
-                             "x and y are measured from the edge where the overhang begins.");
+            throw InputError(
+                reader.place_of_key("x_mm"),
+                fmt::format("the tip at ({}, {}) mm is farther from the clamp than the strip of {} "
+                            "mm is long",
+                            test.x_mm[i], test.y_mm[i], test.length_mm[i]),
+                "x and y are measured from the edge where the overhang begins.");
         }
         campaign_.cantilever.push_back(test);
     }

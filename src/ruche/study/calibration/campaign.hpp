@@ -58,9 +58,9 @@ struct TensionTest : TestFile {
     double width_mm = 0.0;
     double prestretch = 0.0;  ///< 0: the campaign's
     Grips grips = Grips::wide;
-    double grip_width_mm = 0.0;  ///< of a dogbone at the clamps; 0: the narrow part was measured by itself
+    double grip_width_mm = 0.0;    ///< of a dogbone at the clamps; 0: the narrow part was measured by itself
     double gauge_length_mm = 0.0;  ///< of a dogbone: length of the narrow part
-    int cycle = 0;              ///< 0 = the last complete one
+    int cycle = 0;                 ///< 0 = the last complete one
     Branch branch = Branch::unloading;
     RestLength rest_length = RestLength::automatic;
     double pretension_n = 0.0;  ///< rows below this force are left out
@@ -69,8 +69,8 @@ struct TensionTest : TestFile {
 /// [[shear]]
 struct ShearTest : TestFile {
     double angle_deg = 0.0;
-    double height_mm = 0.0;  ///< between the clamps
-    double width_mm = 0.0;   ///< along the clamps
+    double height_mm = 0.0;       ///< between the clamps
+    double width_mm = 0.0;        ///< along the clamps
     double largest_strain = 0.0;  ///< end of the linear range; 0: found
 };
 

@@ -43,7 +43,8 @@ std::span<const Field<FabricMeasurements>> fields<FabricMeasurements>() {
         {"poissons_ratio", &F::poissons_ratio, "", -0.99, 0.99,
          "Poisson's ratio, when it is known; else it comes from the widths in the tension tests."},
         {"youngs_modulus", choice<&F::youngs_modulus>(modulus_choices), "", -infinity, infinity,
-         "Which Young's modulus the fabric under plastic gets: \"secant\" (a line through the whole unloading "
+         "Which Young's modulus the fabric under plastic gets: \"secant\" (a line through the whole "
+         "unloading "
          "branch, as the paper does), \"tangent\" (at zero stretch), \"working\" (pulls as hard as the "
          "fabric's law at the pre-stretch) or \"stated\"."},
         {"youngs_modulus_mpa", &F::youngs_modulus_mpa, "MPa", 0, 1e5,
@@ -78,7 +79,8 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
         {"width_mm", &T::width_mm, "mm", 0.5, most_mm, "Relaxed width of the sample."},
         {"prestretch", &T::prestretch, "", 1.01, 3, "Pre-stretch that the test is for; else the campaign's."},
         {"grips", choice<&T::grips>(grip_names), "", -infinity, infinity,
-         "\"wide\": the clamps hold the whole width, which the joint fit takes into account. \"dogbone\": the "
+         "\"wide\": the clamps hold the whole width, which the joint fit takes into account. \"dogbone\": "
+         "the "
          "narrow part is measured, its width is free."},
         {"grip_width_mm", &T::grip_width_mm, "mm", 0, most_mm,
          "Width of a dogbone at the clamps, when length_mm and the displacement are those of the clamps."},
@@ -88,7 +90,8 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
          "\"unloading\", as fabric on a frame is released, or \"loading\" where nothing else was measured."},
         {"rest_length", choice<&T::rest_length>(rest_lengths), "", -infinity, infinity,
          "Where stretch begins: \"gauge\" (length_mm at displacement 0), \"toe\" (where the first loading "
-         "begins to pull), \"unloaded\" (where the branch ceases to pull), or \"auto\": the gauge, and the toe "
+         "begins to pull), \"unloaded\" (where the branch ceases to pull), or \"auto\": the gauge, and the "
+         "toe "
          "where more than 2 % are slack."},
         {"pretension_n", &T::pretension_n, "N", 0, 1e5, "Rows with less force than this are left out."},
     };
@@ -100,7 +103,8 @@ std::span<const Field<ShearTest>> fields<ShearTest>() {
     using T = ShearTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
-        {"angle_deg", &T::angle_deg, "deg", -180, 180, "Angle from the fabric's first axis to the direction from clamp to clamp."},
+        {"angle_deg", &T::angle_deg, "deg", -180, 180,
+         "Angle from the fabric's first axis to the direction from clamp to clamp."},
         {"height_mm", &T::height_mm, "mm", 1, most_mm, "Distance of the two clamps."},
         {"width_mm", &T::width_mm, "mm", 1, most_mm, "Width of the sample along the clamps."},
         {"largest_strain", &T::largest_strain, "", 0, 2,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 
 #include "ruche/core/document.hpp"
 #include "ruche/study/calibration/statistics.hpp"
@@ -45,9 +46,10 @@ CardValue assumed(double value, const std::string& why) { return {value, "assume
 
 CardValue thickness(const FabricMeasurements& f) {
     if (f.thickness_mm.empty())
-        return assumed(Material{}.fabric_thickness,
-                       "nobody measured it; the paper's fabric. All moduli of the fabric scale with 1/thickness, "
-                       "and curvature nearly with the thickness");
+        return assumed(
+            Material{}.fabric_thickness,
+            "nobody measured it; the paper's fabric. All moduli of the fabric scale with 1/thickness, "
+            "and curvature nearly with the thickness");
     const std::string pressure = f.thickness_pressure_kpa > 0.0
                                      ? fmt::format(" at {:g} kPa", f.thickness_pressure_kpa)
                                      : ", pressure not stated";
@@ -66,17 +68,18 @@ CardValue areal_density(const FabricMeasurements& f) {
 CardValue plastic_modulus(const Calibration& c) {
     if (c.campaign.plastic.youngs_modulus_mpa > 0.0)
         return {c.campaign.plastic.youngs_modulus_mpa, "stated in " + file_name(c.campaign.file), {}, {}};
-    if (c.plastic.empty()) return assumed(Material{}.plastic_youngs_modulus, "nobody measured it; the paper's TPU 95A");
+    if (c.plastic.empty())
+        return assumed(Material{}.plastic_youngs_modulus, "nobody measured it; the paper's TPU 95A");
     std::vector<double> values;
     double variance = 0.0;
     for (const PlasticCurve& curve : c.plastic) {
         values.push_back(curve.modulus);
         variance += std::pow(curve.error / static_cast<double>(c.plastic.size()), 2.0);
     }
-    CardValue value =
-        mean_of(values, fmt::format("measured: tangent at zero, strains up to {:g}", c.plastic.front().test.window));
+    CardValue value = mean_of(
+        values, fmt::format("measured: tangent at zero, strains up to {:g}", c.plastic.front().test.window));
     const double half = std::max(1.96 * std::sqrt(variance), half_width_of_mean(spread(values)));
-    value.interval = {{value.value - half, value.value + half}};
+    value.interval = std::array{value.value - half, value.value + half};
     value.files = files_of(c.plastic);
     return value;
 }
@@ -90,9 +93,9 @@ CardValue bending(const Calibration& c, double areal_density, bool density_assum
         value.source += fmt::format(", mean of {} orientations and sides ({:.3g} to {:.3g} N mm)",
                                     fit.groups.size(), fit.smallest, fit.largest);
     if (density_assumed)
-        value.source += fmt::format("; with the assumed areal density of {:g} kg/m^2, to which it is proportional",
-                                    areal_density);
-    if (fit.has_interval) value.interval = {{fit.low, fit.high}};
+        value.source += fmt::format(
+            "; with the assumed areal density of {:g} kg/m^2, to which it is proportional", areal_density);
+    if (fit.has_interval) value.interval = std::array{fit.low, fit.high};
     value.files = {file_with_hash(c.campaign.file)};
     return value;
 }
@@ -121,8 +124,9 @@ CardValue mean_of(const std::vector<double>& readings, const std::string& source
         return value;
     }
     const double half = half_width_of_mean(s);
-    value.source += fmt::format(", mean of {} readings with a standard deviation of {:.2g}", s.count, s.deviation);
-    value.interval = {{std::max(s.mean - half, 0.0), s.mean + half}};
+    value.source +=
+        fmt::format(", mean of {} readings with a standard deviation of {:.2g}", s.count, s.deviation);
+    value.interval = std::array{std::max(s.mean - half, 0.0), s.mean + half};
     return value;
 }
 
@@ -138,7 +142,10 @@ CardSet measured_values(const Calibration& c) {
     put(set, &Material::plastic_youngs_modulus, plastic_modulus(c));
     put(set, &Material::plastic_density,
         c.campaign.plastic.density_kg_per_m3 > 0.0
-            ? CardValue{c.campaign.plastic.density_kg_per_m3, "stated in " + file_name(c.campaign.file), {}, {}}
+            ? CardValue{c.campaign.plastic.density_kg_per_m3,
+                        "stated in " + file_name(c.campaign.file),
+                        {},
+                        {}}
             : assumed(Material{}.plastic_density, "nobody measured it; typical of TPU 95A"));
     return set;
 }
@@ -162,12 +169,11 @@ static std::string correlated_with(const LawFit& fit, std::size_t parameter) {
 void add_law_values(CardSet& set, const Calibration& c, const CalibratedSet& fitted) {
     const bool joint = c.campaign.options.mode == FitMode::joint;
     const std::vector<std::string> files = files_of(fitted.tests);
-    const std::string source =
-        joint ? fmt::format("fitted to {} tension tests at once", fitted.tests.size())
-              : "fitted axis by axis as the paper does (eq. 12 with 1/(1 - nu^2))";
+    const std::string source = joint ? fmt::format("fitted to {} tension tests at once", fitted.tests.size())
+                                     : "fitted axis by axis as the paper does (eq. 12 with 1/(1 - nu^2))";
     for (const ParameterEstimate& p : fitted.fit.parameters) {
         CardValue value{p.value, source, {}, files};
-        value.interval = {{p.low, p.high}};
+        value.interval = std::array{p.low, p.high};
         if (!p.identifiable())
             value.source += fmt::format(
                 "; NOT IDENTIFIABLE: the profile likelihood is flat {}, the interval ends at the fit's bound",
@@ -181,7 +187,7 @@ void add_law_values(CardSet& set, const Calibration& c, const CalibratedSet& fit
         if (c.shear_modulus)
             put(set, &Material::alpha_3,
                 {fitted.fit.material.alpha_3, "measured: shear tests, linear range",
-                 {{c.shear_modulus->low, c.shear_modulus->high}}, files_of(c.shear)});
+                 std::array{c.shear_modulus->low, c.shear_modulus->high}, files_of(c.shear)});
         else
             put(set, &Material::alpha_3,
                 assumed(fitted.fit.material.alpha_3,
@@ -193,7 +199,8 @@ void add_law_values(CardSet& set, const Calibration& c, const CalibratedSet& fit
         for (const double v : fitted.poissons_ratios)
             if (!std::isnan(v)) measured.push_back(v);
         if (c.campaign.fabric.poissons_ratio > -1.0)
-            put(set, &Material::fabric_poissons_ratio, {nu, "stated in " + file_name(c.campaign.file), {}, {}});
+            put(set, &Material::fabric_poissons_ratio,
+                {nu, "stated in " + file_name(c.campaign.file), {}, {}});
         else if (!measured.empty())
             put(set, &Material::fabric_poissons_ratio,
                 mean_of(measured, "measured: mean of -E22/E11 (paper eq. 9)"));
@@ -203,13 +210,17 @@ void add_law_values(CardSet& set, const Calibration& c, const CalibratedSet& fit
     }
     put(set, &Material::laminate_poissons_ratio,
         {fitted.fit.material.laminate_poissons_ratio,
-         fmt::format("mean of the fabric's and the plastic's {:g}", c.campaign.plastic.poissons_ratio), {}, {}});
+         fmt::format("mean of the fabric's and the plastic's {:g}", c.campaign.plastic.poissons_ratio),
+         {},
+         {}});
     CardValue modulus{fitted.fit.material.fabric_youngs_modulus,
-                      std::string(choice_text(c.campaign.fabric.youngs_modulus)), {}, {}};
+                      std::string(choice_text(c.campaign.fabric.youngs_modulus)),
+                      {},
+                      {}};
     if (c.campaign.fabric.youngs_modulus != YoungsModulusChoice::stated) modulus.files = files;
-    modulus.source += fmt::format("; secant {:.3g}, tangent {:.3g}, working {:.3g} MPa",
-                                  fitted.fabric_modulus.secant, fitted.fabric_modulus.tangent,
-                                  fitted.fabric_modulus.working);
+    modulus.source +=
+        fmt::format("; secant {:.3g}, tangent {:.3g}, working {:.3g} MPa", fitted.fabric_modulus.secant,
+                    fitted.fabric_modulus.tangent, fitted.fabric_modulus.working);
     put(set, &Material::fabric_youngs_modulus, modulus);
 }
 
@@ -241,19 +252,22 @@ static std::string value_text(const CardValue& value) {
 }
 
 std::string card_text(const MaterialCard& card) {
-    std::string text = "# Material card, made by `ruche calibrate`. Units are in the keys; intervals are 95 %.\n";
+    std::string text =
+        "# Material card, made by `ruche calibrate`. Units are in the keys; intervals are 95 %.\n";
     text += fmt::format("name = {}\n", toml_quoted(card.name));
     if (!card.description.empty()) text += fmt::format("description = {}\n", toml_quoted(card.description));
     if (!card.warnings.empty()) {
         text += "warnings = [\n";
-        for (const std::string& warning : card.warnings) text += fmt::format("    {},\n", toml_quoted(warning));
+        for (const std::string& warning : card.warnings)
+            text += fmt::format("    {},\n", toml_quoted(warning));
         text += "]\n";
     }
     for (const CardSet& set : card.sets) {
         text += fmt::format("\n[[set]]\nprestretch = {}\n", set.prestretch);
         for (const Field<Material>& field : fields<Material>()) {
             const auto value = set.values.find(std::string(bare_name(info(field))));
-            if (value != set.values.end()) text += fmt::format("{} = {}\n", field.key, value_text(value->second));
+            if (value != set.values.end())
+                text += fmt::format("{} = {}\n", field.key, value_text(value->second));
         }
     }
     return text;

@@ -1,5 +1,6 @@
 #include "ruche/study/calibration/column_names.hpp"
 
+#include <algorithm>
 #include <array>
 #include <span>
 #include <utility>
@@ -9,18 +10,36 @@ namespace {
 
 using Names = std::span<const std::string_view>;
 
-constexpr std::string_view force_names[] = {"load",   "force",    "standard force", "standardkraft", "kraft",
-                                            "carga",  "fuerza",   "forza",          "charge",        "effort",
-                                            "carico", "prüfkraft", "last",          "f"};
-constexpr std::string_view displacement_names[] = {
-    "extension",    "displacement",   "standard travel", "standardweg", "traversenweg", "weg",
-    "verschiebung", "crosshead",      "travel",          "elongation",  "verlängerung", "allongement",
-    "déplacement",  "desplazamiento", "alargamiento",    "spostamento", "allungamento", "dehnung",
-    "strain",       "deformation",    "d",               "dl",          "Δl"};
+constexpr std::string_view force_names[] = {
+    "load",  "force",  "standard force", "standardkraft", "kraft",     "carga", "fuerza",
+    "forza", "charge", "effort",         "carico",        "prüfkraft", "last",  "f"};
+constexpr std::string_view displacement_names[] = {"extension",
+                                                   "displacement",
+                                                   "standard travel",
+                                                   "standardweg",
+                                                   "traversenweg",
+                                                   "weg",
+                                                   "verschiebung",
+                                                   "crosshead",
+                                                   "travel",
+                                                   "elongation",
+                                                   "verlängerung",
+                                                   "allongement",
+                                                   "déplacement",
+                                                   "desplazamiento",
+                                                   "alargamiento",
+                                                   "spostamento",
+                                                   "allungamento",
+                                                   "dehnung",
+                                                   "strain",
+                                                   "deformation",
+                                                   "d",
+                                                   "dl",
+                                                   "Δl"};
 constexpr std::string_view width_names[] = {"width", "breite", "largeur", "ancho", "larghezza", "w"};
-constexpr std::string_view time_names[] = {"time", "zeit", "prüfzeit", "temps", "tiempo", "tempo", "t"};
 constexpr std::string_view branch_names[] = {"branch", "direction", "richtung", "phase", "sens"};
-constexpr std::string_view mass_names[] = {"mass", "hung mass", "masse", "weight", "gewicht", "masa", "massa", "m"};
+constexpr std::string_view mass_names[] = {"mass",    "hung mass", "masse", "weight",
+                                           "gewicht", "masa",      "massa", "m"};
 constexpr std::string_view length_names[] = {"length", "länge", "longueur", "longitud", "lunghezza", "l"};
 
 Names names_of(Quantity quantity) {
@@ -31,8 +50,6 @@ Names names_of(Quantity quantity) {
             return displacement_names;
         case Quantity::width:
             return width_names;
-        case Quantity::time:
-            return time_names;
         case Quantity::branch:
             return branch_names;
         case Quantity::mass:
@@ -58,16 +75,19 @@ struct Unit {
 };
 
 constexpr double standard_gravity = 9.80665;
-constexpr Unit force_units[] = {{"n", {1.0}},         {"kn", {1e3}},
-                                {"mn", {1e-3}},       {"cn", {1e-2}},
-                                {"dan", {10.0}},      {"gf", {1e-3 * standard_gravity}},
-                                {"g", {1e-3 * standard_gravity}}, {"kgf", {standard_gravity}},
-                                {"kp", {standard_gravity}},       {"lbf", {4.4482216152605}}};
-constexpr Unit length_units[] = {{"mm", {1.0}},    {"cm", {10.0}},         {"m", {1e3}},
-                                 {"µm", {1e-3}},   {"um", {1e-3}},         {"in", {25.4}},
+constexpr Unit force_units[] = {{"n", {1.0}},
+                                {"kn", {1e3}},
+                                {"mn", {1e-3}},
+                                {"cn", {1e-2}},
+                                {"dan", {10.0}},
+                                {"gf", {1e-3 * standard_gravity}},
+                                {"g", {1e-3 * standard_gravity}},
+                                {"kgf", {standard_gravity}},
+                                {"kp", {standard_gravity}},
+                                {"lbf", {4.4482216152605}}};
+constexpr Unit length_units[] = {{"mm", {1.0}},       {"cm", {10.0}},         {"m", {1e3}},
+                                 {"µm", {1e-3}},      {"um", {1e-3}},         {"in", {25.4}},
                                  {"%", {1e-2, true}}, {"mm/mm", {1.0, true}}, {"-", {1.0, true}}};
-constexpr Unit time_units[] = {{"s", {1.0}},  {"sec", {1.0}}, {"ms", {1e-3}},
-                               {"min", {60.0}}, {"h", {3600.0}}};
 constexpr Unit mass_units[] = {{"g", {1e-3 * standard_gravity}}, {"kg", {standard_gravity}}};
 
 std::span<const Unit> units_of(Quantity quantity) {
@@ -78,8 +98,6 @@ std::span<const Unit> units_of(Quantity quantity) {
         case Quantity::width:
         case Quantity::length:
             return length_units;
-        case Quantity::time:
-            return time_units;
         case Quantity::mass:
             return mass_units;
         case Quantity::branch:
@@ -91,7 +109,7 @@ std::span<const Unit> units_of(Quantity quantity) {
 }  // namespace
 
 std::string_view quantity_name(Quantity quantity) {
-    constexpr std::array<std::string_view, 7> names = {"force",  "displacement", "width", "time",
+    constexpr std::array<std::string_view, 6> names = {"force",  "displacement", "width",
                                                        "branch", "mass",         "length"};
     return names[static_cast<std::size_t>(quantity)];
 }
@@ -139,7 +157,11 @@ std::string unit_in_name(std::string_view name) {
     }
     for (const std::string_view mark : {" in ", " / ", "_"}) {
         const std::size_t at = text.rfind(mark);
-        if (at != std::string::npos) return folded(std::string_view(text).substr(at + mark.size()));
+        if (at == std::string::npos) continue;
+        // "width_mm" has a unit, "machine_force" has none.
+        std::string unit = folded(std::string_view(text).substr(at + mark.size()));
+        for (const Quantity q : {Quantity::force, Quantity::displacement, Quantity::mass})
+            if (unit_scale(q, unit)) return unit;
     }
     return {};
 }

@@ -7,7 +7,7 @@
 namespace ruche {
 
 /// What a column of a test may hold.
-enum class Quantity { force, displacement, width, time, branch, mass, length };
+enum class Quantity { force, displacement, width, branch, mass, length };
 
 std::string_view quantity_name(Quantity quantity);
 

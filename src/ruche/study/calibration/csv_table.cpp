@@ -269,9 +269,10 @@ CsvTable read_csv_table(const std::string& path) {
         return parse_csv(read_file(path, "file of a test", longest), path);
     } catch (const InputError& error) {
         if (!error.advice().empty() || error.problem().find("longer than") == std::string::npos) throw;
-        throw InputError(error.place(), error.problem(),
-                         "A test has some thousand rows: 5 to 50 readings a second are plenty. Export it with "
-                         "fewer.");
+        throw InputError(
+            error.place(), error.problem(),
+            "A test has some thousand rows: 5 to 50 readings a second are plenty. Export it with "
+            "fewer.");
     }
 }
 

@@ -27,8 +27,8 @@ struct CsvTable {
 /// A cell as a number with that decimal mark; NaN when it is none. "1.234,5" and "1,234.5" are numbers too.
 double cell_number(std::string_view cell, char decimal);
 
-/// Bytes as UTF-8 without a byte order mark, from UTF-8, UTF-16 with a mark, or else Windows-1252 (which holds
-/// Latin-1). `file` is named when it is no text.
+/// Bytes as UTF-8 without a byte order mark, from UTF-8, UTF-16 with a mark, or else Windows-1252 (which
+/// holds Latin-1). `file` is named when it is no text.
 std::string text_of(std::string_view bytes, const std::string& file);
 
 /// Finds delimiter, decimal mark, names and units. Throws InputError when there is no table of at least two

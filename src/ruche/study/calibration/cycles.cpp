@@ -87,7 +87,8 @@ double slack_of(const TestRecord& record, const Cycle& first) {
     double noise = 0.0;
     const std::size_t beginning = force.size() / 5 + 3;
     for (std::size_t i = 2; i < beginning; ++i)
-        noise += std::pow(force[i] - 2.0 * force[i - 1] + force[i - 2], 2.0) / (6.0 * static_cast<double>(beginning - 2));
+        noise += std::pow(force[i] - 2.0 * force[i - 1] + force[i - 2], 2.0) /
+                 (6.0 * static_cast<double>(beginning - 2));
     noise = std::sqrt(noise);
     const double threshold = std::max(0.005 * largest, 4.0 * noise);
     std::size_t last_below = first.begin;

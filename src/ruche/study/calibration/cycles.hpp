@@ -22,8 +22,9 @@ std::vector<Cycle> find_cycles(const TestRecord& record);
 /// its noise and 0.5 % of its largest; 0 when it rises from the start.
 double slack_of(const TestRecord& record, const Cycle& first);
 
-/// Sudden falls of the force, by more than a tenth of its range, from one row to the next or while the displacement
-/// grows by less than a fiftieth of its range: a grip slipped or a yarn broke. The rows where they end.
+/// Sudden falls of the force, by more than a tenth of its range, from one row to the next or while the
+/// displacement grows by less than a fiftieth of its range: a grip slipped or a yarn broke. The rows where
+/// they end.
 std::vector<std::size_t> sudden_falls(const TestRecord& record, const Cycle& cycle);
 
 }  // namespace ruche

@@ -1,10 +1,10 @@
 #include "ruche/study/calibration/elastica.hpp"
 
+#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -13,8 +13,8 @@ namespace {
 
 namespace odeint = boost::numeric::odeint;
 
-/// An angle, its derivative, and the integrals of the sines of it and of its complement. The angle is theta for
-/// strips that hang little and pi/2 - theta for those that hang steeply, so that no digits cancel.
+/// An angle, its derivative, and the integrals of the sines of it and of its complement. The angle is theta
+/// for strips that hang little and pi/2 - theta for those that hang steeply, so that no digits cancel.
 using State = std::array<double, 4>;
 using Stepper = odeint::runge_kutta_fehlberg78<State>;
 constexpr double half_turn = 0.5 * std::numbers::pi;
@@ -36,7 +36,7 @@ Cantilever member(double q) {
     State state{start, 0.0, 0.0, 0.0};
     double u = 0.0;
     double step = 0.01;
-    auto stepper = odeint::make_controlled<Stepper>(1e-15 * start, 1e-14);
+    auto stepper = odeint::make_controlled<Stepper>(1e-14 * start, 1e-13);
     State before = state;
     double u_before = u;
     while (horizontal(state) > 0.0) {
@@ -66,9 +66,9 @@ template <class Function>
 Cantilever where(const Function& function, double low, double high) {
     std::uintmax_t iterations = 200;
     const boost::math::tools::eps_tolerance<double> tolerance(50);
-    const auto [a, b] = boost::math::tools::toms748_solve(
-        [&](double log_q) { return function(member(std::exp(log_q))); }, std::log(low), std::log(high),
-        tolerance, iterations);
+    const auto [a, b] =
+        boost::math::tools::toms748_solve([&](double log_q) { return function(member(std::exp(log_q))); },
+                                          std::log(low), std::log(high), tolerance, iterations);
     return member(std::exp(0.5 * (a + b)));
 }
 

@@ -5,11 +5,11 @@
 
 namespace ruche {
 
-/// What the grips of each sample change: force and mid width of the simulated clamped sample (its measured length,
-/// width and angle) over those of the homogeneous law, at Chebyshev points of the measured stretch, interpolated to
-/// the rows. The ratio is within some per cent of one and hardly depends on the parameters, so a fit alternates: fit
-/// the homogeneous law times the ratio, simulate at the new parameters, until they rest. Where the simulator finds no
-/// equilibrium the ratio is that of the neighbouring points.
+/// What the grips of each sample change: force and mid width of the simulated clamped sample (its measured
+/// length, width and angle) over those of the homogeneous law, at Chebyshev points of the measured stretch,
+/// interpolated to the rows. The ratio is within some per cent of one and hardly depends on the parameters,
+/// so a fit alternates: fit the homogeneous law times the ratio, simulate at the new parameters, until they
+/// rest. Where the simulator finds no equilibrium the ratio is that of the neighbouring points.
 void correct_for_grips(std::vector<LawCurve>& curves, std::span<const TensionCurve> tests,
                        const Material& material, double element_size_mm);
 

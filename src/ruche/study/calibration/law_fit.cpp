@@ -98,7 +98,8 @@ LawPrediction predict(const Material& material, const LawCurve& curve) {
         const double width = curve.width_ratio.empty() ? 1.0 : curve.width_ratio[i];
         const double none = std::nan("");
         prediction.nominal_stress.push_back(point.found ? curve.stretch[i] * force * point.stress : none);
-        prediction.transverse.push_back(point.found ? green_strain(width * stretch_of(point.transverse)) : none);
+        prediction.transverse.push_back(point.found ? green_strain(width * stretch_of(point.transverse))
+                                                    : none);
     }
     return prediction;
 }

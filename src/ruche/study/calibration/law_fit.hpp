@@ -22,9 +22,9 @@ struct LawCurve {
 };
 
 struct LawFitOptions {
-    Material start;             ///< values of what is not fitted; those of the others are not used
-    bool fit_poisson = false;   ///< with the widths; else start's Poisson's ratio is taken as it is
-    bool intervals = true;      ///< profile likelihood, leave one orientation out: a hundred further fits
+    Material start;            ///< values of what is not fitted; those of the others are not used
+    bool fit_poisson = false;  ///< with the widths; else start's Poisson's ratio is taken as it is
+    bool intervals = true;     ///< profile likelihood, leave one orientation out: a hundred further fits
 };
 
 /// One parameter of the fit.
@@ -67,15 +67,15 @@ struct LawPrediction {
 };
 LawPrediction predict(const Material& material, const LawCurve& curve);
 
-/// All orientations at once: alpha_1 to gamma_2 (and nu_f) that meet every row of every curve in the least-squares
-/// sense, the material point's transverse and shear strain free, Neo-Hookean share included. Rows are weighted
-/// with their standard deviation: the noise of their curve (from differences of neighbours) and one misfit of
-/// the law for all. Intervals are those of the profile likelihood at 95 %, widened for rows whose residuals
-/// resemble their neighbours'.
+/// All orientations at once: alpha_1 to gamma_2 (and nu_f) that meet every row of every curve in the
+/// least-squares sense, the material point's transverse and shear strain free, Neo-Hookean share included.
+/// Rows are weighted with their standard deviation: the noise of their curve (from differences of neighbours)
+/// and one misfit of the law for all. Intervals are those of the profile likelihood at 95 %, widened for rows
+/// whose residuals resemble their neighbours'.
 [[nodiscard]] LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options);
 
-/// alpha~, beta and gamma of S = alpha~ E - beta log((gamma - E)/gamma) (paper eq. 12) for one curve: linear in
-/// the first two, so only gamma is searched for.
+/// alpha~, beta and gamma of S = alpha~ E - beta log((gamma - E)/gamma) (paper eq. 12) for one curve: linear
+/// in the first two, so only gamma is searched for.
 struct AxisFit {
     double alpha = 0.0, beta = 0.0, gamma = 0.0;
     double rms = 0.0;  ///< of S, MPa

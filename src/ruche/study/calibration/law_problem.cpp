@@ -204,8 +204,7 @@ double LawProblem::relative_rms(const LeastSquaresFit& fit, std::size_t curve) c
 }
 
 void LawProblem::leave_out(double angle_deg) {
-    for (std::size_t i = 0; i < curves_.size(); ++i)
-        rows_[i].left_out = curves_[i].angle_deg == angle_deg;
+    for (std::size_t i = 0; i < curves_.size(); ++i) rows_[i].left_out = curves_[i].angle_deg == angle_deg;
 }
 
 }  // namespace ruche

@@ -9,6 +9,8 @@ namespace ruche {
 class LawProblem {
   public:
     LawProblem(std::span<const LawCurve> curves, const LawFitOptions& options);
+    LawProblem(const LawProblem&) = delete;
+    LawProblem& operator=(const LawProblem&) = delete;
 
     const LeastSquares& problem() const { return problem_; }
     Eigen::VectorXd start() const;
@@ -27,9 +29,9 @@ class LawProblem {
 
   private:
     struct Rows {
-        int begin = 0;        // of its residuals
-        int stress = 0;       // rows
-        int transverse = 0;   // rows, 0 without widths
+        int begin = 0;       // of its residuals
+        int stress = 0;      // rows
+        int transverse = 0;  // rows, 0 without widths
         double stress_scale = 1.0;
         double stress_deviation = 1.0;
         double transverse_deviation = 1.0;

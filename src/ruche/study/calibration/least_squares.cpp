@@ -39,7 +39,11 @@ class Residuals final : public ceres::CostFunction {
 };
 
 ceres::Solver::Options solver_options() {
-    FLAGS_minloglevel = google::FATAL;  // the library never prints
+    // The library never prints.
+    [[maybe_unused]] static const bool silent = [] {
+        FLAGS_minloglevel = google::GLOG_FATAL;
+        return true;
+    }();
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.logging_type = ceres::SILENT;

@@ -18,8 +18,7 @@ PlasticCurve read_plastic_curve(const PlasticTest& test) {
         read_record(read_csv_table(test.file), {.columns = test.columns, .length_mm = test.length_mm});
     curve.warnings = record.warnings;
     const std::vector<Cycle> cycles = find_cycles(record);
-    if (cycles.empty())
-        throw InputError({.file = test.file}, "the displacement never changes");
+    if (cycles.empty()) throw InputError({.file = test.file}, "the displacement never changes");
     const Cycle& first = cycles.front();
     const double slack = slack_of(record, first);
     const double zero = record.displacement[first.begin] + (slack > 1e-3 * test.length_mm ? slack : 0.0);
@@ -37,9 +36,10 @@ PlasticCurve read_plastic_curve(const PlasticTest& test) {
         y.push_back(curve.stress[i]);
     }
     if (x.size() < 6)
-        throw InputError(test.place, fmt::format("{} has {} rows with a strain up to window = {:g}; at least 6 "
-                                                 "are needed",
-                                                 test.file, x.size(), test.window),
+        throw InputError(test.place,
+                         fmt::format("{} has {} rows with a strain up to window = {:g}; at least 6 "
+                                     "are needed",
+                                     test.file, x.size(), test.window),
                          "Record more often or widen the window.");
     const auto count = static_cast<Eigen::Index>(x.size());
     Eigen::MatrixXd a(count, 3);
@@ -55,10 +55,11 @@ PlasticCurve read_plastic_curve(const PlasticTest& test) {
     curve.error = std::sqrt(variance * normal.inverse()(1, 1)) / test.window;
     curve.intercept = c[0];
     if (!(curve.modulus > 0.1) || curve.modulus > 1e5)
-        throw InputError({.file = test.file},
-                         fmt::format("gives a Young's modulus of {:.3g} MPa; printed plastics have 10 to 5000",
-                                     curve.modulus),
-                         "Is the force or the displacement in another unit, are columns swapped?");
+        throw InputError(
+            {.file = test.file},
+            fmt::format("gives a Young's modulus of {:.3g} MPa; printed plastics have 10 to 5000",
+                        curve.modulus),
+            "Is the force or the displacement in another unit, are columns swapped?");
     return curve;
 }
 
@@ -85,11 +86,12 @@ FabricModulus fabric_modulus(std::span<const LawCurve> curves, const Material& m
     const Spread tangent = mean_slope(curves, 0.2);
     const double strain = green_strain(prestretch);
     const FabricResponse law = FabricLaw(material)(Vec3(strain, strain, 0.0));
-    return {.secant = secant.mean,
-            .tangent = tangent.mean,
-            .working = 0.5 * (law.stress[0] + law.stress[1]) * (1.0 - material.laminate_poissons_ratio) / strain,
-            .secant_spread = secant.deviation,
-            .tangent_spread = tangent.deviation};
+    return {
+        .secant = secant.mean,
+        .tangent = tangent.mean,
+        .working = 0.5 * (law.stress[0] + law.stress[1]) * (1.0 - material.laminate_poissons_ratio) / strain,
+        .secant_spread = secant.deviation,
+        .tangent_spread = tangent.deviation};
 }
 
 double strip_curvature(const Material& m, double s, double tp) {
@@ -98,8 +100,8 @@ double strip_curvature(const Material& m, double s, double tp) {
     const double q = m.fabric_youngs_modulus * s * s;
     const double tf = m.fabric_thickness;
     const double rest = 1.0 / (s * s);  // of the fabric's metric; that of plastic is 1
-    // Plastic: a - 1 - 2 z b in [0, tp]; fabric: a - rest - 2 z b in [-tf, 0], its modulus q = E_f s^2 in layout
-    // measure (A = s^2 (a - rest), area 1/s^2).
+    // Plastic: a - 1 - 2 z b in [0, tp]; fabric: a - rest - 2 z b in [-tf, 0], its modulus q = E_f s^2 in
+    // layout measure (A = s^2 (a - rest), area 1/s^2).
     Eigen::Matrix2d k;
     k << p * tp + q * tf, -(p * tp * tp - q * tf * tf),  //
         -(p * tp * tp - q * tf * tf), 4.0 / 3.0 * (p * tp * tp * tp + q * tf * tf * tf);

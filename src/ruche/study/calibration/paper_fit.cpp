@@ -27,8 +27,9 @@ AxisData data_of_axis(std::span<const LawCurve> curves, int axis) {
         }
     }
     if (data.green.empty())
-        throw InputError({}, axis == 0 ? "no tension test along the fabric's first axis (angle_deg = 0)"
-                                       : "no tension test along the fabric's second axis (angle_deg = 90)",
+        throw InputError({},
+                         axis == 0 ? "no tension test along the fabric's first axis (angle_deg = 0)"
+                                   : "no tension test along the fabric's second axis (angle_deg = 90)",
                          "The paper's procedure fits each axis by itself and needs both.");
     return data;
 }
@@ -36,7 +37,8 @@ AxisData data_of_axis(std::span<const LawCurve> curves, int axis) {
 /// Intervals of alpha~, beta and gamma of one axis.
 std::array<ProfileInterval, 3> intervals(const AxisData& data, const AxisFit& fit) {
     const double largest = *std::max_element(data.green.begin(), data.green.end());
-    const double deviation = std::max(fit.rms, 1e-12 * *std::max_element(data.stress.begin(), data.stress.end()));
+    const double deviation =
+        std::max(fit.rms, 1e-12 * *std::max_element(data.stress.begin(), data.stress.end()));
     LeastSquares problem;
     problem.residual_count = static_cast<int>(data.green.size());
     problem.low = Eigen::Vector3d(0.0, 0.0, largest * (1.0 + 1e-6));
@@ -100,7 +102,7 @@ PaperFit fit_as_in_the_paper(std::span<const LawCurve> curves, const Material& s
     m.gamma_1 = result.axis[0].gamma;
     m.gamma_2 = result.axis[1].gamma;
     const auto estimate = [&](std::size_t parameter, const ProfileInterval& i, double low, double high) {
-        result.parameters[parameter] = {parameter, m.*law_parameters[parameter], low, high, i.low_open,
+        result.parameters[parameter] = {parameter,  m.*law_parameters[parameter], low, high, i.low_open,
                                         i.high_open};
     };
     for (std::size_t axis = 0; axis < 2; ++axis) {

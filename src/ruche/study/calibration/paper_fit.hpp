@@ -7,7 +7,7 @@ namespace ruche {
 /// The paper's decoupled fit (5.1): each axis by itself with the closure E22 = -nu_f E11.
 struct PaperFit {
     Material material;
-    std::array<AxisFit, 2> axis;  ///< alpha~, beta, gamma as fitted
+    std::array<AxisFit, 2> axis;                  ///< alpha~, beta, gamma as fitted
     std::array<ParameterEstimate, 7> parameters;  ///< alpha_1, alpha_2, alpha_3 (open), beta, gamma
 };
 
@@ -16,10 +16,10 @@ struct PaperFit {
 ///     S_ii = alpha~_i E_ii - beta_i log((gamma_i - E_ii)/gamma_i)
 ///     alpha~_i = (alpha_i - nu_f^2 sqrt(alpha_1 alpha_2)) / (1 - nu_f^2)
 ///
-/// (eq. 12 with its missing 1/(1 - nu_f^2)), and solves the second line for alpha_1 and alpha_2. Knows neither the
-/// Neo-Hookean share nor the grips. alpha_3 is left as it is in `start`. Intervals are those of the profile
-/// likelihood of alpha~, beta and gamma; those of alpha follow at the other axis' best value. Throws InputError
-/// when there is no curve within five degrees of an axis.
+/// (eq. 12 with its missing 1/(1 - nu_f^2)), and solves the second line for alpha_1 and alpha_2. Knows
+/// neither the Neo-Hookean share nor the grips. alpha_3 is left as it is in `start`. Intervals are those of
+/// the profile likelihood of alpha~, beta and gamma; those of alpha follow at the other axis' best value.
+/// Throws InputError when there is no curve within five degrees of an axis.
 [[nodiscard]] PaperFit fit_as_in_the_paper(std::span<const LawCurve> curves, const Material& start);
 
 /// alpha from alpha~ (both axes) by Newton's method; alpha~_i >= 0.

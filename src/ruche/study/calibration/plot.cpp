@@ -19,7 +19,8 @@ class Axis {
             low_ = std::floor(std::log10(low) + 1e-9);
             high_ = std::ceil(std::log10(high) - 1e-9);
             if (high_ <= low_) high_ = low_ + 1.0;
-            for (double decade = low_; decade <= high_ + 0.5; decade += 1.0) ticks_.push_back(std::pow(10.0, decade));
+            for (double decade = low_; decade <= high_ + 0.5; decade += 1.0)
+                ticks_.push_back(std::pow(10.0, decade));
             return;
         }
         if (!(high > low)) high = low + 1.0;
@@ -68,8 +69,8 @@ std::string points_of(const PlotSeries& series, const Axis& x, const Axis& y) {
     for (std::size_t i = 0; i < series.x.size(); i += stride) {
         if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
         if (series.dots)
-            text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", x(series.x[i]), y(series.y[i]),
-                                series.size);
+            text += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>", x(series.x[i]),
+                                y(series.y[i]), series.size);
         else
             text += fmt::format("{:.1f},{:.1f} ", x(series.x[i]), y(series.y[i]));
     }
@@ -89,12 +90,14 @@ std::string legend_svg(const Plot& plot) {
     for (const PlotSeries& series : plot.series) {
         if (series.label.empty()) continue;
         const double x = left + 10.0;
-        text += series.dots
-                    ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>", x + 9.0, y - 4.0,
-                                  series.colour)
-                    : fmt::format("<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"2\"{}/>",
-                                  x, y - 4.0, x + 18.0, y - 4.0, series.colour,
-                                  series.dashed ? " stroke-dasharray=\"5 3\"" : "");
+        text +=
+            series.dots
+                ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>", x + 9.0, y - 4.0,
+                              series.colour)
+                : fmt::format(
+                      "<line x1=\"{}\" y1=\"{}\" x2=\"{}\" y2=\"{}\" stroke=\"{}\" stroke-width=\"2\"{}/>", x,
+                      y - 4.0, x + 18.0, y - 4.0, series.colour,
+                      series.dashed ? " stroke-dasharray=\"5 3\"" : "");
         text += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", x + 24.0, y, html_escaped(series.label));
         y += 15.0;
     }
@@ -145,19 +148,22 @@ std::string svg_plot(const Plot& plot) {
         "<text class=\"title\" x=\"{3}\" y=\"18\">{2}</text>\n",
         plot.width_px, plot.height_px, html_escaped(plot.title), left);
     for (const double tick : x.ticks())
-        svg += fmt::format("<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"
-                           "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
-                           x(tick), top, h - bottom, h - bottom + 15.0, tick);
+        svg += fmt::format(
+            "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"
+            "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
+            x(tick), top, h - bottom, h - bottom + 15.0, tick);
     for (const double tick : y.ticks())
-        svg += fmt::format("<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
-                           "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
-                           left, w - right, y(tick), left - 6.0, y(tick) + 4.0, tick);
+        svg += fmt::format(
+            "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
+            "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
+            left, w - right, y(tick), left - 6.0, y(tick) + 4.0, tick);
     for (const PlotSeries& series : plot.series) svg += series_svg(series, x, y);
     svg += legend_svg(plot);
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", 0.5 * (left + w - right),
                        h - 10.0, html_escaped(plot.x_label));
-    svg += fmt::format("<text transform=\"translate(14,{}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n</svg>\n",
-                       0.5 * (top + h - bottom), html_escaped(plot.y_label));
+    svg += fmt::format(
+        "<text transform=\"translate(14,{}) rotate(-90)\" text-anchor=\"middle\">{}</text>\n</svg>\n",
+        0.5 * (top + h - bottom), html_escaped(plot.y_label));
     return svg;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "ruche/output/metrics.hpp"
 #include "ruche/scene/read_scene.hpp"
@@ -44,7 +45,8 @@ Scene scene_of(const PrintedSample& sample) {
 /// A sample, its scene with the card's material, and what the last release gave.
 class Sample {
   public:
-    Sample(const PrintedSample& sample, const MaterialCard& card) : sample_(sample), scene_(scene_of(sample)) {
+    Sample(const PrintedSample& sample, const MaterialCard& card)
+        : sample_(sample), scene_(scene_of(sample)) {
         scene_.material = resolve_card(card, scene_.fabric.prestretch).material;
     }
 
@@ -62,9 +64,10 @@ class Sample {
             ++count;
         }
         if (count == 0)
-            throw InputError(sample_.place, sample_.strip.empty()
-                                                ? "the scene has no strip whose radius can be measured"
-                                                : fmt::format("the scene has no strip \"{}\"", sample_.strip));
+            throw InputError(sample_.place,
+                             sample_.strip.empty()
+                                 ? "the scene has no strip whose radius can be measured"
+                                 : fmt::format("the scene has no strip \"{}\"", sample_.strip));
         radius_ = count / std::max(curvature, 1e-9);
         return std::log(radius_);
     }
@@ -150,18 +153,19 @@ void fit_printed_samples(Calibration& calibration, const Control& control) {
         fit.samples.push_back(sample.outcome());
         const PrintedOutcome& outcome = fit.samples.back();
         if (!outcome.certain)
-            fit.warnings.push_back(to_string(outcome.sample.place) + ": the release did not converge to a stable shape");
+            fit.warnings.push_back(to_string(outcome.sample.place) +
+                                   ": the release did not converge to a stable shape");
         if (std::abs(std::log(outcome.simulated_radius_mm / outcome.sample.radius_mm)) > 0.1)
             fit.warnings.push_back(fmt::format("{}: simulated radius {:.3g} mm, measured {:.3g} mm",
                                                to_string(outcome.sample.place), outcome.simulated_radius_mm,
                                                outcome.sample.radius_mm));
     }
     for (CardSet& set : card.sets)
-        set.values[fit.parameter] = {fit.value,
-                                     fmt::format("fitted to the radii of {} printed samples by simulation",
-                                                 samples.size()),
-                                     {{fit.low, fit.high}},
-                                     {file_with_hash(campaign.file)}};
+        set.values[fit.parameter] = {
+            fit.value,
+            fmt::format("fitted to the radii of {} printed samples by simulation", samples.size()),
+            std::array{fit.low, fit.high},
+            {file_with_hash(campaign.file)}};
     calibration.warnings.insert(calibration.warnings.end(), fit.warnings.begin(), fit.warnings.end());
     calibration.printed = fit;
 }

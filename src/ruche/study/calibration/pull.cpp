@@ -58,12 +58,14 @@ PullPoint Pull::at(double strain, bool derivatives) {
             there = law_(turn_ * next);
         }
         if (!std::isfinite(there.energy)) return point;
+        const bool stuck = length <= 1e-9;
         strain_ = next;
         response = there;
         if (step.norm() < 1e-13 * (1.0 + std::abs(strain))) {
             point.found = true;
             break;
         }
+        if (stuck) break;
     }
     const Vec3 stress = turn_.transpose() * response.stress;
     point.found = point.found || stress.tail<2>().norm() < 1e-9 * (stress.norm() + rounding);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include "ruche/material/fabric_law_parameters.hpp"
 
 namespace ruche {
@@ -16,8 +18,8 @@ struct PullPoint {
     bool found = false;  ///< an equilibrium was found
 };
 
-/// The fabric's law in a uniaxial tension test at an angle to e_1: for a given Green strain along the pull the
-/// transverse and shear strain for which S_tt = S_dt = 0, by Newton's method on the energy, which they
+/// The fabric's law in a uniaxial tension test at an angle to e_1: for a given Green strain along the pull
+/// the transverse and shear strain for which S_tt = S_dt = 0, by Newton's method on the energy, which they
 /// minimise. Derivatives by the implicit function theorem:
 ///
 ///     dS_dd/dp = (dS_d/dp) - T_df T_ff^-1 (dS_f/dp),   dE_f/dp = -T_ff^-1 (dS_f/dp)

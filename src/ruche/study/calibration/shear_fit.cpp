@@ -28,8 +28,8 @@ Window window(const ShearCurve& curve, double range) {
     return w;
 }
 
-/// How far the best quadratic curve bends away from its tangent at zero, over the stress at the end; 0 where the
-/// bend is lost in the scatter.
+/// How far the best quadratic curve bends away from its tangent at zero, over the stress at the end; 0 where
+/// the bend is lost in the scatter.
 double bend(const Window& w, double range) {
     const auto count = static_cast<Eigen::Index>(w.strain.size());
     Eigen::MatrixXd a(count, 3);
@@ -43,7 +43,9 @@ double bend(const Window& w, double range) {
     const double rms = (a * c - y).norm() / std::sqrt(static_cast<double>(count));
     const double end = std::abs(c[1] + c[2]);
     if (end == 0.0) return 0.0;
-    if (std::abs(c[2]) < 6.0 * rms / std::sqrt(static_cast<double>(count)) * 3.0) return 0.0;
+    // Standard error of the quadratic term of evenly spread points on [0, 1]: sqrt(180 / n) times the
+    // scatter.
+    if (std::abs(c[2]) < 2.0 * std::sqrt(180.0 / static_cast<double>(count)) * rms) return 0.0;
     return std::abs(c[2]) / end;
 }
 
@@ -56,9 +58,10 @@ ShearCurve read_shear_curve(const ShearTest& test, double thickness) {
     curve.warnings = record.warnings;
     const std::vector<Cycle> cycles = find_cycles(record);
     if (record.size() < 6 || cycles.empty())
-        throw InputError({.file = test.file}, fmt::format("has {} rows in which the clamps move; at least 6 are "
-                                                          "needed",
-                                                          cycles.empty() ? 0 : record.size()));
+        throw InputError({.file = test.file},
+                         fmt::format("has {} rows in which the clamps move; at least 6 are "
+                                     "needed",
+                                     cycles.empty() ? 0 : record.size()));
     // The branch that is released, as in tension; else the only one there is.
     std::size_t begin = cycles.back().begin;
     std::size_t end = cycles.back().peak + 1;
@@ -74,7 +77,8 @@ ShearCurve read_shear_curve(const ShearTest& test, double thickness) {
     double largest = 0.0;
     for (const double g : curve.strain) largest = std::max(largest, std::abs(g));
     if (largest > 3.0 || largest < 1e-3)
-        throw InputError({.file = test.file}, fmt::format("shears the sample by {:.3g}; 0.05 to 1 was expected", largest),
+        throw InputError({.file = test.file},
+                         fmt::format("shears the sample by {:.3g}; 0.05 to 1 was expected", largest),
                          "Is the displacement in another unit, is height_mm right, are columns swapped?");
     if (curve.strain.size() < 6)
         throw InputError({.file = test.file, .line = record.line[begin]},
@@ -111,7 +115,8 @@ ShearModulus mean_of(std::span<const double> values, std::span<const double> err
     const Spread s = spread(values);
     double variance = 0.0;
     for (const double e : errors) variance += std::pow(e / s.count, 2.0);
-    // Between two tests Student's t with one degree of freedom says next to nothing: twice the standard error.
+    // Between two tests Student's t with one degree of freedom says next to nothing: twice the standard
+    // error.
     const double between = s.count > 1 ? 2.0 * s.deviation / std::sqrt(static_cast<double>(s.count)) : 0.0;
     const double half = std::max(between, 1.96 * std::sqrt(variance));
     return {s.mean, std::max(s.mean - half, 0.0), s.mean + half};
@@ -120,9 +125,11 @@ ShearModulus mean_of(std::span<const double> values, std::span<const double> err
 /// Slope of the simulated sample's response over that of simple shear.
 double simulated_share(const ShearCurve& curve, const Material& material, double modulus) {
     const ShearTest& test = curve.test;
-    const std::vector<double> shears = {0.25 * curve.range, 0.5 * curve.range, 0.75 * curve.range, curve.range};
+    const std::vector<double> shears = {0.25 * curve.range, 0.5 * curve.range, 0.75 * curve.range,
+                                        curve.range};
     const ShearedResponse response = simulate_sheared(
-        {.length_mm = test.height_mm, .width_mm = test.width_mm, .angle_deg = test.angle_deg}, material, shears);
+        {.length_mm = test.height_mm, .width_mm = test.width_mm, .angle_deg = test.angle_deg}, material,
+        shears);
     std::vector<double> stress;
     for (const double force : response.force_N)
         stress.push_back(force / (test.width_mm * material.fabric_thickness));

@@ -58,9 +58,10 @@ std::size_t choose_cycle(const TensionCurve& curve) {
     throw InputError(place(test, curve.record.line[last]),
                      fmt::format("there is no {} in this test",
                                  unloading ? "unloading: the displacement never comes back" : "loading"),
-                     unloading ? "Fabric on a frame is released, so the unloading branch counts. Record a whole "
-                                 "cycle, or say branch = \"loading\" and take the result with care."
-                               : "");
+                     unloading
+                         ? "Fabric on a frame is released, so the unloading branch counts. Record a whole "
+                           "cycle, or say branch = \"loading\" and take the result with care."
+                         : "");
 }
 
 void warn_of_falls(TensionCurve& curve) {
@@ -80,6 +81,12 @@ double zero_of(TensionCurve& curve, const Cycle& cycle) {
     const TestRecord& r = curve.record;
     const double slack = slack_of(r, curve.cycles.front());
     const double start = r.displacement[curve.cycles.front().begin];
+    if (std::abs(start) > large_slack * curve.test.length_mm &&
+        curve.cycles.front().begin < curve.cycles.front().peak)
+        curve.warnings.push_back(
+            fmt::format("{}: the displacement begins at {:.3g} mm; length_mm is taken as the "
+                        "length at displacement 0",
+                        r.file, start));
     switch (curve.test.rest_length) {
         case RestLength::gauge:
             return 0.0;
@@ -107,18 +114,21 @@ void check_plausible(const TensionCurve& curve) {
     const TensionTest& test = curve.test;
     const double stretch = curve.largest_stretch();
     if (stretch > 4.0 || stretch < 1.0 + 0.1 * (test.prestretch - 1.0))
-        throw InputError(place(test),
-                         fmt::format("stretches the sample to {:.4g} times its length; {:.4g} was expected",
-                                     stretch, test.prestretch),
-                         "Is the displacement in another unit, is length_mm right, are force and displacement "
-                         "swapped? See force_unit and displacement_unit of [columns].");
-    const double pull = *std::max_element(curve.record.force.begin(), curve.record.force.end()) / test.width_mm;
+        throw InputError(
+            place(test),
+            fmt::format("stretches the sample to {:.4g} times its length; {:.4g} was expected", stretch,
+                        test.prestretch),
+            "Is the displacement in another unit, is length_mm right, are force and displacement "
+            "swapped? See force_unit and displacement_unit of [columns].");
+    const double pull =
+        *std::max_element(curve.record.force.begin(), curve.record.force.end()) / test.width_mm;
     constexpr double softest = 1e-3;
     constexpr double hardest = 30.0;
     if (pull < softest || pull > hardest)
-        throw InputError(place(test),
-                         fmt::format("pulls with {:.3g} N per mm of width; knits pull with 0.01 to 5 N/mm", pull),
-                         "Is the force in another unit (force_unit in [columns]), is width_mm right?");
+        throw InputError(
+            place(test),
+            fmt::format("pulls with {:.3g} N per mm of width; knits pull with 0.01 to 5 N/mm", pull),
+            "Is the force in another unit (force_unit in [columns]), is width_mm right?");
 }
 
 void check_swapped(const TensionCurve& curve) {
@@ -152,9 +162,7 @@ void take_rows(TensionCurve& curve, double thickness) {
     const double area = test.width_mm * thickness;
     for (std::size_t i = begin; i < end; i += stride) {
         const double stretch = 1.0 + (r.displacement[i] - curve.zero) / curve.rest_length;
-        if (stretch < 1.0 || r.force[i] < test.pretension_n) {
-            if (test.pretension_n > 0.0 || stretch < 1.0) continue;
-        }
+        if (stretch < 1.0 || (test.pretension_n > 0.0 && r.force[i] < test.pretension_n)) continue;
         curve.stretch.push_back(stretch);
         curve.nominal_stress.push_back(r.force[i] / area);
         if (!r.width.empty()) curve.transverse.push_back(green_strain(r.width[i] / test.width_mm));
@@ -170,10 +178,10 @@ void check_widths(TensionCurve& curve) {
     // Never below a third of the relaxed width, and near it where the sample is hardly stretched.
     const auto [low, high] = std::minmax_element(curve.transverse.begin(), curve.transverse.end());
     if (*low > green_strain(0.33) && *high < 0.2 && *high > -0.3) return;
-    curve.warnings.push_back(fmt::format("{}: widths from {:.3g} to {:.3g} times width_mm make no sense and were "
-                                         "left out",
-                                         curve.record.file, std::sqrt(std::max(0.0, 1.0 + 2.0 * *low)),
-                                         stretch_of(*high)));
+    curve.warnings.push_back(
+        fmt::format("{}: widths from {:.3g} to {:.3g} times width_mm make no sense and were "
+                    "left out",
+                    curve.record.file, std::sqrt(std::max(0.0, 1.0 + 2.0 * *low)), stretch_of(*high)));
     curve.transverse.clear();
 }
 
@@ -193,8 +201,8 @@ std::string TensionCurve::name() const {
 TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     TensionCurve curve{.test = test, .rest_length = test.length_mm};
     const CsvTable table = read_csv_table(test.file);
-    curve.record = read_record(
-        table, {.columns = test.columns, .length_mm = test.length_mm, .width_mm = test.width_mm});
+    curve.record =
+        read_record(table, {.columns = test.columns, .length_mm = test.length_mm, .width_mm = test.width_mm});
     curve.warnings = curve.record.warnings;
     if (curve.record.size() < fewest_rows)
         throw InputError(place(test), fmt::format("has {} rows of numbers; at least {} are needed",
@@ -213,10 +221,10 @@ TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     check_widths(curve);
     warn_of_falls(curve);
     if (curve.largest_stretch() < 1.0 + 0.8 * (test.prestretch - 1.0))
-        curve.warnings.push_back(
-            fmt::format("{}: measured up to a stretch of {:.3f} only, used at {:.3g}: beyond the data the law is "
-                        "a guess",
-                        curve.record.file, curve.largest_stretch(), test.prestretch));
+        curve.warnings.push_back(fmt::format(
+            "{}: measured up to a stretch of {:.3f} only, used at {:.3g}: beyond the data the law is "
+            "a guess",
+            curve.record.file, curve.largest_stretch(), test.prestretch));
     if (test.branch == Branch::loading)
         curve.warnings.push_back(curve.record.file +
                                  ": the loading branch was taken; fabric that is released is softer");

@@ -21,7 +21,6 @@ std::span<const Field<ColumnOptions>> fields<ColumnOptions>() {
          "Column of the clamps' displacement (or the strain), by name or by number from 1."},
         {"width", &C::width, "", -infinity, infinity,
          "Column of the sample's width at half its length; Poisson's ratio comes from it."},
-        {"time", &C::time, "", -infinity, infinity, "Column of the time; not needed."},
         {"branch", &C::branch, "", -infinity, infinity,
          "Column that says \"loading\" or \"unloading\"; else turns of the displacement tell."},
         {"mass", &C::mass, "", -infinity, infinity, "Column of a hung mass, in place of a force."},
@@ -58,7 +57,8 @@ class Mapping {
 
     std::optional<Column> find(Quantity quantity) {
         const std::string& wanted = wanted_name(quantity);
-        std::optional<std::size_t> index = wanted.empty() ? by_name(quantity, true) : chosen(quantity, wanted);
+        std::optional<std::size_t> index =
+            wanted.empty() ? by_name(quantity, true) : chosen(quantity, wanted);
         // A force in a unit that is none had better be asked about than overlooked.
         if (!index && (quantity == Quantity::force || quantity == Quantity::displacement))
             index = by_name(quantity, false);
@@ -72,9 +72,9 @@ class Mapping {
 
   private:
     const std::string& wanted_name(Quantity quantity) const {
-        const std::array<const std::string*, 7> wanted = {
-            &options_.force,  &options_.displacement, &options_.width, &options_.time,
-            &options_.branch, &options_.mass,         &options_.length};
+        const std::array<const std::string*, 6> wanted = {&options_.force, &options_.displacement,
+                                                          &options_.width, &options_.branch,
+                                                          &options_.mass,  &options_.length};
         return *wanted[static_cast<std::size_t>(quantity)];
     }
 
@@ -84,7 +84,8 @@ class Mapping {
         for (std::size_t i = 0; i < table_.names.size(); ++i) {
             int score = name_score(quantity, table_.names[i]);
             const std::string unit = written_unit(i);
-            if (unit_must_fit && !unit.empty() && quantity != Quantity::branch && !unit_scale(quantity, unit)) score = 0;
+            if (unit_must_fit && !unit.empty() && quantity != Quantity::branch && !unit_scale(quantity, unit))
+                score = 0;
             if (score <= best) continue;
             best = score;
             found = i;
@@ -146,13 +147,11 @@ class Mapping {
                              "width_unit in [columns].");
         const std::string_view assumed = quantity == Quantity::force  ? "N"
                                          : quantity == Quantity::mass ? "g"
-                                         : quantity == Quantity::time ? "s"
                                                                       : "mm";
-        record_.columns.push_back(
-            fmt::format("{} = {} in {} (assumed)", quantity_name(quantity), column_text(table_, index), assumed));
-        if (quantity != Quantity::time)
-            record_.warnings.push_back(fmt::format("{}: the table does not say the unit of its {}: {} assumed",
-                                                   table_.file, quantity_name(quantity), assumed));
+        record_.columns.push_back(fmt::format("{} = {} in {} (assumed)", quantity_name(quantity),
+                                              column_text(table_, index), assumed));
+        record_.warnings.push_back(fmt::format("{}: the table does not say the unit of its {}: {} assumed",
+                                               table_.file, quantity_name(quantity), assumed));
         return *unit_scale(quantity, assumed);
     }
 
@@ -185,11 +184,11 @@ Columns find_columns(Mapping& mapping, const CsvTable& table) {
         const std::string found = table.names.empty()
                                       ? fmt::format("{} columns without names", table.column_count())
                                       : fmt::format("the columns \"{}\"", fmt::join(table.names, "\", \""));
-        throw InputError(mapping.header(),
-                         fmt::format("no column of the {} was found among {}", force ? "displacement" : "force",
-                                     found),
-                         fmt::format("Name it in [columns]: {} = \"its name\", or its number from 1.",
-                                     force ? "displacement" : "force"));
+        throw InputError(
+            mapping.header(),
+            fmt::format("no column of the {} was found among {}", force ? "displacement" : "force", found),
+            fmt::format("Name it in [columns]: {} = \"its name\", or its number from 1.",
+                        force ? "displacement" : "force"));
     }
     if (force->index == way->index)
         throw InputError(mapping.header(), "force and displacement are the same column");
@@ -256,13 +255,13 @@ TestRecord read_record(const CsvTable& table, const RecordContext& context) {
         if (columns.branch) record.branch.push_back(branch_of(cell_of(row, columns.branch->index)));
     }
     if (left_out.count > 0) {
-        const std::string what =
-            fmt::format("\"{}\" is no number; {} of {} rows cannot be read", left_out.first_cell,
-                        left_out.count, table.rows.size());
+        const std::string what = fmt::format("\"{}\" is no number; {} of {} rows cannot be read",
+                                             left_out.first_cell, left_out.count, table.rows.size());
         if (20 * left_out.count > table.rows.size())
             throw InputError({.file = table.file, .line = left_out.first_line}, what,
                              "Export the test without gaps, or name other columns in [columns].");
-        record.warnings.push_back(fmt::format("{}:{}: {} and were left out", table.file, left_out.first_line, what));
+        record.warnings.push_back(
+            fmt::format("{}:{}: {} and were left out", table.file, left_out.first_line, what));
     }
     return record;
 }

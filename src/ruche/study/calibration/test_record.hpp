@@ -11,7 +11,7 @@ namespace ruche {
 
 /// [columns]: which columns of a table are what, by name or by number from 1; empty: found by their names.
 struct ColumnOptions {
-    std::string force, displacement, width, time, branch, mass, length;
+    std::string force, displacement, width, branch, mass, length;
     std::string force_unit, displacement_unit, width_unit;  ///< where the header has none
 };
 
@@ -23,7 +23,7 @@ enum class Branch { unknown, loading, unloading };
 /// A test in the units of the program, row by row.
 struct TestRecord {
     std::string file;
-    std::vector<int> line;  ///< in the file
+    std::vector<int> line;             ///< in the file
     std::vector<double> force;         ///< N
     std::vector<double> displacement;  ///< mm, as recorded
     std::vector<double> width;         ///< mm; empty when not measured
@@ -43,8 +43,9 @@ struct RecordContext {
     double width_mm = 0.0;   ///< for widths in %
 };
 
-/// Force and displacement (or hung mass and length) from a table, with their units. Rows with gaps or words are left
-/// out with a warning, more than one in twenty refused. Throws InputError with file, line and column.
+/// Force and displacement (or hung mass and length) from a table, with their units. Rows with gaps or words
+/// are left out with a warning, more than one in twenty refused. Throws InputError with file, line and
+/// column.
 TestRecord read_record(const CsvTable& table, const RecordContext& context);
 
 }  // namespace ruche
