@@ -137,8 +137,8 @@ TEST_CASE("statistics: line, noise and resemblance of neighbours") {
     const Line line = fit_line(x, y);
     CHECK(line.slope == doctest::Approx(2.0).epsilon(1e-12));
     CHECK(line.intercept == doctest::Approx(3.0).epsilon(1e-9));
-    CHECK(correlation_length(slow) > 20.0);
-    CHECK(correlation_length(white) < 1.5);
+    CHECK(correlation_length(std::array{slow}) > 20.0);
+    CHECK(correlation_length(std::array{white}) < 1.5);
     CHECK(noise_variance(white) == doctest::Approx(1.0 / 12.0).epsilon(0.15));
     CHECK(noise_variance(slow) < 1e-3);
     CHECK(student_t(0.95, 10) == doctest::Approx(2.228138852).epsilon(1e-8));

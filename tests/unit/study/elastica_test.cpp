@@ -27,7 +27,8 @@ TEST_CASE("elastica: follows the independent master curve to its nine digits") {
 TEST_CASE("elastica: the load that a chord angle belongs to is the tabulated one") {
     for (const std::vector<double>& row : read_csv("cantilever_inverse.csv")) {
         CAPTURE(row[0]);
-        CHECK(cantilever_of_chord(std::atan(row[0])).load == doctest::Approx(row[1]).epsilon(2e-8));
+        // Eight digits are printed.
+        CHECK(cantilever_of_chord(std::atan(row[0])).load == doctest::Approx(row[1]).epsilon(1e-7));
     }
 }
 

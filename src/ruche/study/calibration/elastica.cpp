@@ -2,8 +2,6 @@
 
 #include <array>
 #include <boost/math/tools/toms748_solve.hpp>
-#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
-#include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <cmath>
 #include <numbers>
@@ -33,29 +31,29 @@ Cantilever member(double q) {
     };
     const auto horizontal = [steep](const State& s) { return steep ? half_turn - s[0] : s[0]; };
     const double start = steep ? complement : tip;
+    // The angle changes over lengths of 1 and, where it grows like Airy's function, of u^(-1/2) > 0.2: with
+    // this step the error of order h^8 is rounding.
+    constexpr double step = 0.02;
+    Stepper stepper;
     State state{start, 0.0, 0.0, 0.0};
-    double u = 0.0;
-    double step = 0.01;
-    auto stepper = odeint::make_controlled<Stepper>(1e-14 * start, 1e-13);
     State before = state;
-    double u_before = u;
-    while (horizontal(state) > 0.0) {
+    double u = 0.0;
+    for (double at = 0.0; horizontal(state) > 0.0; at += step) {
         before = state;
-        u_before = u;
-        while (stepper.try_step(derivative, state, u, step) == odeint::fail) {
-        }
+        u = at;
+        stepper.do_step(derivative, state, at, step);
     }
     // The last step went too far: the one that ends where the strip is horizontal, by Newton's method.
-    double length = u - u_before;
+    double length = step;
     for (int i = 0; i < 20; ++i) {
         State there = before;
-        Stepper().do_step(derivative, there, u_before, length);
+        stepper.do_step(derivative, there, u, length);
         const double change = (steep ? there[0] - half_turn : there[0]) / there[1];
         length -= change;
         state = there;
-        if (std::abs(change) < 1e-14 * (u_before + length)) break;
+        if (std::abs(change) < 1e-14 * (u + length)) break;
     }
-    const double end = u_before + length;
+    const double end = u + length;
     const double sine = state[2] / end;
     const double cosine = state[3] / end;
     return {end * end * end, steep ? sine : cosine, steep ? cosine : sine, tip};

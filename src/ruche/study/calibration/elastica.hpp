@@ -16,7 +16,7 @@ struct Cantilever {
 
 /// Seen from the tip, with u = Gamma^(1/3) (1 - s), the strips of all loads are one family theta'' = -u cos
 /// theta, theta'(0) = 0 whose members differ in the tip's angle: no boundary-value problem is left. Loads
-/// from 1e-6 to 1e4, to about twelve digits (Runge-Kutta-Fehlberg of order 8 with step control).
+/// from 1e-6 to 1e4, to about twelve digits (Runge-Kutta-Fehlberg of order 8).
 Cantilever cantilever(double load);
 
 /// The strip whose chord from clamp to tip hangs at atan2(y, x) = `angle` below the horizontal, in (0, 1.5].

@@ -171,11 +171,11 @@ void LawProblem::weigh(const LeastSquaresFit& fit) {
             const std::vector<double> values = block(fit.residuals, begin_of(rows), count, rows.*deviation);
             double mean_square = 0.0;
             for (const double v : values) mean_square += v * v / count;
-            noise.back() = std::min(noise_variance(values), mean_square);
+            noise.back() = noise_variance(values);
             misfit += mean_square - noise.back();
             ++curves;
         }
-        if (curves > 0) misfit /= curves;
+        misfit = curves > 0 ? std::max(misfit / curves, 0.0) : 0.0;
         for (std::size_t i = 0; i < rows_.size(); ++i)
             rows_[i].*deviation = std::max(std::sqrt(noise[i] + misfit), floor);
     };
@@ -188,13 +188,9 @@ void LawProblem::weigh(const LeastSquaresFit& fit) {
 }
 
 double LawProblem::correlation(const LeastSquaresFit& fit) const {
-    double sum = 0.0;
-    double weight = 0.0;
-    for (const Rows& rows : rows_) {
-        sum += rows.stress * correlation_length(block(fit.residuals, rows.begin, rows.stress, 1.0));
-        weight += rows.stress;
-    }
-    return weight > 0.0 ? sum / weight : 1.0;
+    std::vector<std::vector<double>> stresses;
+    for (const Rows& rows : rows_) stresses.push_back(block(fit.residuals, rows.begin, rows.stress, 1.0));
+    return correlation_length(stresses);
 }
 
 double LawProblem::relative_rms(const LeastSquaresFit& fit, std::size_t curve) const {

@@ -78,8 +78,8 @@ LeastSquaresFit minimise(const LeastSquares& problem, const Eigen::VectorXd& sta
     } else {
         fit.converged = true;
     }
-    fit.residuals.resize(problem.residual_count);
-    fit.jacobian.resize(problem.residual_count, fit.p.size());
+    fit.residuals.setZero(problem.residual_count);
+    fit.jacobian.setZero(problem.residual_count, fit.p.size());
     if (!problem.evaluate(fit.p, fit.residuals, &fit.jacobian)) fit.converged = false;
     fit.sum_of_squares = fit.residuals.squaredNorm();
     return fit;

@@ -56,7 +56,7 @@ std::array<ProfileInterval, 3> intervals(const AxisData& data, const AxisFit& fi
     };
     const LeastSquaresFit best = minimise(problem, Eigen::Vector3d(fit.alpha, fit.beta, fit.gamma));
     const std::vector<double> residuals(best.residuals.begin(), best.residuals.end());
-    const double correlation = correlation_length(residuals);
+    const double correlation = correlation_length(std::array{residuals});
     const double t = student_t(0.95, problem.residual_count / correlation - 3.0);
     std::array<ProfileInterval, 3> result;
     for (int i = 0; i < 3; ++i)

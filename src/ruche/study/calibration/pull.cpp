@@ -41,7 +41,6 @@ PullPoint Pull::at(double strain, bool derivatives) {
         strain_.tail<2>().setZero();
         response = law_(turn_ * strain_);
     }
-    const double rounding = 1e-15 * (law_.elasticity().norm() + 1e-300);
     for (int iteration = 0; iteration < 100; ++iteration) {
         const Vec3 stress = turn_.transpose() * response.stress;
         const Mat3 tangent = turn_.transpose() * response.tangent * turn_;
@@ -50,9 +49,9 @@ PullPoint Pull::at(double strain, bool derivatives) {
         Vec3 next = strain_;
         next.tail<2>() += step;
         FabricResponse there = law_(turn_ * next);
-        // Near the optimum differences of the energy are rounding.
-        const double slack = 1e-14 * (std::abs(response.energy) + rounding);
-        while (!(there.energy <= response.energy + slack) && length > 1e-9) {
+        // So close to the optimum differences of the energy are rounding, and Newton's step is right.
+        const bool close = step.norm() < 1e-6;
+        while (!close && !(there.energy <= response.energy) && length > 1e-9) {
             length *= 0.5;
             next.tail<2>() = strain_.tail<2>() + length * step;
             there = law_(turn_ * next);
@@ -68,7 +67,7 @@ PullPoint Pull::at(double strain, bool derivatives) {
         if (stuck) break;
     }
     const Vec3 stress = turn_.transpose() * response.stress;
-    point.found = point.found || stress.tail<2>().norm() < 1e-9 * (stress.norm() + rounding);
+    point.found = point.found || stress.tail<2>().norm() < 1e-9 * stress.norm();
     point.stress = stress[0];
     point.transverse = strain_[1];
     point.shear = strain_[2];

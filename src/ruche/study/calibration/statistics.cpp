@@ -1,14 +1,14 @@
 #include "ruche/study/calibration/statistics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <vector>
 
 namespace ruche {
 
 double student_t(double confidence, double degrees_of_freedom) {
-    const boost::math::students_t distribution(std::max(degrees_of_freedom, 1.0));
+    const boost::math::students_t distribution(std::max(1.0, degrees_of_freedom));
     return boost::math::quantile(distribution, 0.5 + 0.5 * confidence);
 }
 
@@ -32,16 +32,23 @@ double noise_variance(std::span<const double> r) {
     return 0.5 * sum / static_cast<double>(r.size() - 1);
 }
 
-double correlation_length(std::span<const double> r) {
-    const double mean = spread(r).mean;
+double correlation_length(std::span<const std::vector<double>> curves) {
     double variance = 0.0;
-    for (const double v : r) variance += (v - mean) * (v - mean);
-    if (r.size() < 10 || variance == 0.0) return 1.0;
+    std::size_t rows = 0;
+    std::size_t longest = 0;
+    for (const std::vector<double>& r : curves) {
+        for (const double v : r) variance += v * v;
+        rows += r.size();
+        longest = std::max(longest, r.size());
+    }
+    if (rows < 10 || variance == 0.0) return 1.0;
+    const double scatter = 1.0 / std::sqrt(static_cast<double>(rows));
     double length = 1.0;
-    for (std::size_t lag = 1; lag <= r.size() / 10; ++lag) {
+    for (std::size_t lag = 1; lag <= longest / 10; ++lag) {
         double sum = 0.0;
-        for (std::size_t i = lag; i < r.size(); ++i) sum += (r[i] - mean) * (r[i - lag] - mean);
-        if (sum <= 0.0) break;
+        for (const std::vector<double>& r : curves)
+            for (std::size_t i = lag; i < r.size(); ++i) sum += r[i] * r[i - lag];
+        if (sum <= scatter * variance) break;
         length += 2.0 * sum / variance;
     }
     return length;
@@ -67,7 +74,8 @@ Line fit_line(std::span<const double> x, std::span<const double> y) {
     }
     line.rms = std::sqrt(sum / n);
     if (x.size() > 2)
-        line.slope_error = std::sqrt(sum / (n - 2.0) / xx * std::max(1.0, correlation_length(residuals)));
+        line.slope_error =
+            std::sqrt(sum / (n - 2.0) / xx * std::max(1.0, correlation_length(std::array{residuals})));
     return line;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 namespace ruche {
 
@@ -21,9 +22,9 @@ double half_width_of_mean(const Spread& s);
 double noise_variance(std::span<const double> residuals);
 
 /// By what factor neighbours that resemble each other reduce the number of independent residuals:
-/// 1 + 2 sum_k rho_k, the sum up to the first negative autocorrelation, at most a tenth of the count. 1 for
-/// white noise.
-double correlation_length(std::span<const double> residuals);
+/// 1 + 2 sum_k rho_k, the sum up to the first autocorrelation that is not above its scatter for white noise,
+/// 1/sqrt(n), at most a tenth of a curve. 1 for white noise. Of several curves together.
+double correlation_length(std::span<const std::vector<double>> curves);
 
 /// y = intercept + slope x.
 struct Line {
