@@ -2,6 +2,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ruche/study/calibration/bending_fit.hpp"
@@ -58,9 +60,46 @@ TEST_CASE("cycles: a test that only loads has none that unloads") {
 
 TEST_CASE("slack: is where the force begins, and none where it begins at once") {
     TestRecord record = triangles(1, 0.0);
-    CHECK(slack_of(record, find_cycles(record).front()) < 0.5);
+    CHECK(slack_of(record, find_cycles(record).front()) == 0.0);
     for (double& f : record.force) f = std::max(0.0, f - 1.0);  // pulls from 10 mm on
     CHECK(slack_of(record, find_cycles(record).front()) == doctest::Approx(10.0).epsilon(0.05));
+}
+
+TEST_CASE("slack: a soft beginning in noise is none, at any angle and seed, and 5 mm are found in it") {
+    for (const double noise : {0.0, 0.003, 0.01}) {
+        for (const double angle : {0.0, 45.0, 90.0}) {
+            for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+                CAPTURE(noise);
+                CAPTURE(angle);
+                LawCurve curve = exact_curve(Material{}, angle, 1.7, 300);
+                std::reverse(curve.stretch.begin(), curve.stretch.end());
+                std::reverse(curve.nominal_stress.begin(), curve.nominal_stress.end());
+                add_noise(curve, noise, seed);
+                TestRecord record{.file = "test.csv"};
+                for (const double slack : {0.0, 5.0}) {
+                    record = TestRecord{.file = "test.csv"};
+                    LawCurve flat = exact_curve(Material{}, angle, 1.7, 300);
+                    for (auto& p : flat.nominal_stress) p = 0.0;
+                    flat.nominal_stress.front() = curve.nominal_stress.back();
+                    add_noise(flat, noise, 100 + seed);
+                    for (int i = 0; i < 20 && slack > 0.0; ++i) {
+                        record.displacement.push_back(slack * i / 20.0);
+                        record.force.push_back(flat.nominal_stress[static_cast<std::size_t>(i) + 1]);
+                    }
+                    for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
+                        record.displacement.push_back(slack + 110.0 * (curve.stretch[i] - 1.0));
+                        record.force.push_back(curve.nominal_stress[i]);
+                    }
+                    const double found = slack_of(record, {0, record.size() - 1, record.size(), false});
+                    // What is below 2 % of the length is not taken off.
+                    if (slack == 0.0) CHECK(found < 0.02 * 110.0);
+                    // Where the law begins softly, noise hides it.
+                    if (slack > 0.0 && (noise == 0.0 || (noise < 0.01 && angle > 0.0)))
+                        CHECK(found == doctest::Approx(slack).epsilon(0.4));
+                }
+            }
+        }
+    }
 }
 
 TEST_CASE("sudden falls: a slip of the grip is found, a smooth test has none") {

@@ -43,7 +43,7 @@ std::string cycle_plots(const CalibratedSet& set) {
             .size = 2.2};
         const Cycle& cycle = test.cycles[test.cycle];
         const bool unloading = test.test.branch == Branch::unloading;
-        for (std::size_t i = unloading ? cycle.peak : cycle.begin;
+        for (std::size_t i = unloading ? cycle.unloading() : cycle.begin;
              i < (unloading ? cycle.end : cycle.peak + 1); ++i) {
             used.x.push_back(r.displacement[i]);
             used.y.push_back(r.force[i]);

@@ -1,5 +1,6 @@
 #include "ruche/study/calibration/cycles.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -41,7 +42,6 @@ std::vector<Cycle> noted_cycles(const TestRecord& record) {
     for (std::size_t i = 0; i < count;) {
         Cycle cycle{.begin = i};
         while (i < count && record.branch[i] != Branch::unloading) ++i;
-        // The last row that loads belongs to both branches.
         cycle.peak = i > cycle.begin ? i - 1 : i;
         while (i < count && record.branch[i] == Branch::unloading) ++i;
         cycle.end = i;
@@ -79,29 +79,75 @@ std::vector<Cycle> find_cycles(const TestRecord& record) {
     return cycles;
 }
 
-double slack_of(const TestRecord& record, const Cycle& first) {
-    if (first.peak <= first.begin + 10) return 0.0;
+namespace {
+
+/// The beginning of a loading: displacement from its first row, and force.
+struct Toe {
+    std::vector<double> way, force;
+};
+
+/// Up to where the force, smoothed over five rows, reaches a tenth of its largest; at most some hundred
+/// rows.
+Toe toe_of(const TestRecord& record, const Cycle& first) {
     const std::span<const double> force(record.force.data() + first.begin, first.peak - first.begin + 1);
     const double largest = *std::max_element(force.begin(), force.end());
-    // Second differences know nothing of the slope.
-    double noise = 0.0;
-    const std::size_t beginning = force.size() / 5 + 3;
-    for (std::size_t i = 2; i < beginning; ++i)
-        noise += std::pow(force[i] - 2.0 * force[i - 1] + force[i - 2], 2.0) /
-                 (6.0 * static_cast<double>(beginning - 2));
-    noise = std::sqrt(noise);
-    const double threshold = std::max(0.005 * largest, 4.0 * noise);
-    std::size_t last_below = first.begin;
-    bool began_slack = force[0] < threshold;
-    for (std::size_t i = 0; i < force.size() && began_slack; ++i)
-        if (force[i] < threshold) last_below = first.begin + i;
-    // Back from where it is surely pulled along the slope there to where the force vanished.
-    const std::size_t ahead = std::min(last_below + std::max<std::size_t>(3, force.size() / 20), first.peak);
-    const double rise = record.force[ahead] - record.force[last_below];
-    const double run = record.displacement[ahead] - record.displacement[last_below];
-    double onset = record.displacement[last_below];
-    if (rise > 0.0 && run > 0.0) onset -= std::max(record.force[last_below], 0.0) * run / rise;
-    return std::max(onset - record.displacement[first.begin], 0.0);
+    std::size_t end = 2;
+    const auto smooth = [&](std::size_t i) {
+        double sum = 0.0;
+        for (std::size_t k = i - 2; k <= i + 2; ++k) sum += force[k] / 5.0;
+        return sum;
+    };
+    while (end + 3 < force.size() && smooth(end) < 0.1 * largest) ++end;
+    constexpr std::size_t most = 300;
+    const std::size_t stride = std::max<std::size_t>(1, end / most);
+    Toe toe;
+    for (std::size_t i = 0; i <= end; i += stride) {
+        toe.way.push_back(record.displacement[first.begin + i] - record.displacement[first.begin]);
+        toe.force.push_back(force[i]);
+    }
+    return toe;
+}
+
+/// Sum of squares of the best f0 + k x + c x^2, x = max(0, way - onset), with k, c >= 0 in effect: a fit that
+/// falls anywhere counts as none.
+double sum_of_squares(const Toe& toe, double onset) {
+    const auto count = static_cast<Eigen::Index>(toe.way.size());
+    Eigen::MatrixXd a(count, 3);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const double x = std::max(0.0, toe.way[static_cast<std::size_t>(i)] - onset);
+        a.row(i) = Eigen::RowVector3d(1.0, x, x * x);
+    }
+    const Eigen::Map<const Eigen::VectorXd> f(toe.force.data(), count);
+    const Eigen::Vector3d c = a.colPivHouseholderQr().solve(f);
+    return (a * c - f).squaredNorm();
+}
+
+}  // namespace
+
+double slack_of(const TestRecord& record, const Cycle& first) {
+    if (first.peak < first.begin + 10) return 0.0;
+    const Toe toe = toe_of(record, first);
+    const std::size_t count = toe.way.size();
+    if (count < 8) return 0.0;
+    const double without = sum_of_squares(toe, 0.0);
+    double best = without;
+    double slack = 0.0;
+    for (std::size_t i = 1; i + 5 < count; ++i) {
+        const double sum = sum_of_squares(toe, toe.way[i]);
+        if (sum >= best) continue;
+        best = sum;
+        slack = toe.way[i];
+    }
+    // It has to explain the rows much better than a curve that bends from the start: by 25 times the variance
+    // of a row, five standard deviations. That is the noise (second differences know nothing of the slope),
+    // and the shape of the law, which is no parabola.
+    double variance = 0.0;
+    for (std::size_t i = 2; i < count; ++i)
+        variance += std::pow(toe.force[i] - 2.0 * toe.force[i - 1] + toe.force[i - 2], 2.0) /
+                    (6.0 * static_cast<double>(count - 2));
+    constexpr double shape = 0.002;
+    const double largest = *std::max_element(toe.force.begin(), toe.force.end());
+    return without - best > 25.0 * (variance + std::pow(shape * largest, 2.0)) ? slack : 0.0;
 }
 
 std::vector<std::size_t> sudden_falls(const TestRecord& record, const Cycle& cycle) {

@@ -7,9 +7,11 @@
 
 namespace ruche {
 
-/// Rows [begin, peak] of a record load, rows [peak, end) unload.
+/// Rows [begin, peak] of a record load, rows [unloading(), end) unload.
 struct Cycle {
     std::size_t begin = 0, peak = 0, end = 0;
+    /// Behind the peak, which still is a row of the loading, unless there is no loading.
+    std::size_t unloading() const { return peak > begin ? peak + 1 : peak; }
     bool unloads = false;  ///< the displacement comes back by at least half of the way
 };
 
@@ -18,8 +20,9 @@ struct Cycle {
 /// loading is a single row.
 std::vector<Cycle> find_cycles(const TestRecord& record);
 
-/// How much of a record's displacement is slack: up to where the force of the first loading first stays above
-/// its noise and 0.5 % of its largest; 0 when it rises from the start.
+/// How much of the first loading's displacement is slack: the onset of the broken curve, flat up to it and a
+/// parabola from there, that fits the beginning of the loading best, if it fits significantly better than a
+/// parabola from the start; else 0. A soft beginning in noise is no slack.
 double slack_of(const TestRecord& record, const Cycle& first);
 
 /// Sudden falls of the force, by more than a tenth of its range, from one row to the next or while the

@@ -38,7 +38,7 @@ class Residuals final : public ceres::CostFunction {
     const LeastSquares& problem_;
 };
 
-ceres::Solver::Options solver_options() {
+ceres::Solver::Options solver_options(double tolerance) {
     // The library never prints.
     [[maybe_unused]] static const bool silent = [] {
         FLAGS_minloglevel = google::GLOG_FATAL;
@@ -47,10 +47,10 @@ ceres::Solver::Options solver_options() {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_QR;
     options.logging_type = ceres::SILENT;
-    options.max_num_iterations = 300;
-    options.function_tolerance = 1e-15;
+    options.max_num_iterations = tolerance > 1e-10 ? 60 : 300;
+    options.function_tolerance = tolerance;
     options.gradient_tolerance = 1e-16;
-    options.parameter_tolerance = 1e-13;
+    options.parameter_tolerance = 1e-12;
     options.num_threads = 1;
     return options;
 }
@@ -58,7 +58,7 @@ ceres::Solver::Options solver_options() {
 }  // namespace
 
 LeastSquaresFit minimise(const LeastSquares& problem, const Eigen::VectorXd& start,
-                         const std::vector<int>& held) {
+                         const std::vector<int>& held, double tolerance) {
     LeastSquaresFit fit{.p = start.cwiseMax(problem.low).cwiseMin(problem.high)};
     ceres::Problem ceres_problem;
     std::vector<double*> blocks;
@@ -72,7 +72,7 @@ LeastSquaresFit minimise(const LeastSquares& problem, const Eigen::VectorXd& sta
     for (const int i : held) ceres_problem.SetParameterBlockConstant(blocks[static_cast<std::size_t>(i)]);
     if (held.size() < blocks.size()) {
         ceres::Solver::Summary summary;
-        ceres::Solve(solver_options(), &ceres_problem, &summary);
+        ceres::Solve(solver_options(tolerance), &ceres_problem, &summary);
         fit.converged = summary.IsSolutionUsable();
         fit.message = summary.message;
     } else {

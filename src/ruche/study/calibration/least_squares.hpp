@@ -26,8 +26,8 @@ struct LeastSquaresFit {
 };
 
 /// Levenberg-Marquardt with bounds (Ceres) from `start`, which is moved into the bounds. Parameters in `held`
-/// keep their value.
+/// keep their value. `tolerance`: relative change of the sum of squares at which it stops.
 [[nodiscard]] LeastSquaresFit minimise(const LeastSquares& problem, const Eigen::VectorXd& start,
-                                       const std::vector<int>& held = {});
+                                       const std::vector<int>& held = {}, double tolerance = 1e-15);
 
 }  // namespace ruche

@@ -17,7 +17,9 @@ class Profile {
     double operator()(double value) {
         Eigen::VectorXd start = last_;
         start[index_] = value;
-        const LeastSquaresFit fit = minimise(problem_, start, {index_});
+        // The height is wanted to a hundredth, of a sum of squares of about the number of rows.
+        constexpr double enough = 1e-7;
+        const LeastSquaresFit fit = minimise(problem_, start, {index_}, enough);
         last_ = fit.p;
         if (fit.sum_of_squares < lowest_ && fit.converged) {
             lowest_ = fit.sum_of_squares;

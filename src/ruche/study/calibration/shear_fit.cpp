@@ -67,7 +67,7 @@ ShearCurve read_shear_curve(const ShearTest& test, double thickness) {
     std::size_t end = cycles.back().peak + 1;
     for (const Cycle& cycle : cycles) {
         if (!cycle.unloads) continue;
-        begin = cycle.peak;
+        begin = cycle.unloading();
         end = cycle.end;
     }
     for (std::size_t i = begin; i < end; ++i) {

@@ -156,7 +156,7 @@ void take_rows(TensionCurve& curve, double thickness) {
     const TestRecord& r = curve.record;
     const Cycle& cycle = curve.cycles[curve.cycle];
     const bool unloading = test.branch == Branch::unloading;
-    const std::size_t begin = unloading ? cycle.peak : cycle.begin;
+    const std::size_t begin = unloading ? cycle.unloading() : cycle.begin;
     const std::size_t end = unloading ? cycle.end : cycle.peak + 1;
     const std::size_t stride = std::max<std::size_t>(1, (end - begin) / most_rows);
     const double area = test.width_mm * thickness;
