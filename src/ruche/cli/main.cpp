@@ -57,6 +57,7 @@ int run(int count, char** arguments) {
     ruche::add_render(program, action);
     ruche::add_pattern(program, action);
     ruche::add_bench(program, action);
+    ruche::add_calibrate(program, action);
     ruche::add_cards(program, action);
     ruche::add_virtual_test(program, action);
     ruche::add_template(program, action);

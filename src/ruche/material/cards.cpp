@@ -69,6 +69,21 @@ std::string preset_text(const std::string& name) {
                      "`ruche cards` lists them; a card file of your own is given as a path ending in .toml.");
 }
 
+static std::vector<std::string> take_texts(TableReader& reader, std::string_view key) {
+    std::vector<std::string> texts;
+    const Node* node = reader.take(key);
+    if (node == nullptr) return texts;
+    bool only_texts = node->kind == Node::Kind::array;
+    for (const Node& item : node->items) {
+        only_texts = only_texts && item.kind == Node::Kind::text;
+        texts.push_back(item.text);
+    }
+    if (!only_texts)
+        throw InputError(place_of(*node, reader.path_of(key)),
+                         "expected a list of texts in quotes, found " + describe(*node));
+    return texts;
+}
+
 static CardValue read_card_value(const Node& node, const FieldInfo& field, const std::string& path) {
     if (node.kind != Node::Kind::table)
         throw InputError(place_of(node, path),
@@ -96,6 +111,7 @@ static CardValue read_card_value(const Node& node, const FieldInfo& field, const
                                                                    ends[0], ends[1], result.value));
         result.interval = ends;
     }
+    result.files = take_texts(reader, "files");
     reader.finish();
     return result;
 }
@@ -122,6 +138,7 @@ static MaterialCard parse_card(const Node& root) {
     Title title;
     reader.read(title);
     MaterialCard card{.name = title.name, .description = title.description};
+    card.warnings = take_texts(reader, "warnings");
     CardSet common;
     if (const Node* node = reader.take_table("common")) {
         TableReader values(*node, "common");
@@ -192,6 +209,8 @@ ResolvedCard resolve_card(const MaterialCard& card, const std::array<double, 2>&
     const double s = std::sqrt(prestretch[0] * prestretch[1]);
     const auto [low, high, weight] = bracket(card.sets, s);
     ResolvedCard result{.name = card.name, .warnings = range_warnings(card, s)};
+    for (const std::string& warning : card.warnings)
+        result.warnings.push_back(fmt::format("card {}: {}", card.name, warning));
     for (const Field<Material>& field : fields<Material>()) {
         const std::string name(bare_name(info(field)));
         const CardValue& a = low->values.at(name);

@@ -15,6 +15,7 @@ struct CardValue {
     double value = 0.0;
     std::string source;  ///< "paper Table 1", "measured 2026-03-02", "assumed: ..."
     std::optional<std::array<double, 2>> interval;
+    std::vector<std::string> files;  ///< that it was found from: "tension-00.csv sha256:..."
 };
 
 /// What was found at one pre-stretch; by bare field name ("alpha_1").
@@ -27,7 +28,8 @@ struct CardSet {
 struct MaterialCard {
     std::string name;
     std::string description;
-    std::vector<CardSet> sets;  ///< pre-stretches increase
+    std::vector<CardSet> sets;          ///< pre-stretches increase
+    std::vector<std::string> warnings;  ///< of its calibration; every simulation repeats them
 };
 
 /// Names of the cards that come with the program.

@@ -108,6 +108,18 @@ TEST_CASE("card file: mistakes are named with file, line and key") {
     }
     const CardFile good("card.toml", complete + alpha_1(0.1, ", interval = [0.05, 0.3]"));
     CHECK(load_card(good.path).sets.at(0).values.at("alpha_1").interval.has_value());
+    const CardFile texts("card.toml", complete + alpha_1(0.1, ", files = [1]"));
+    CHECK_THROWS_WITH_AS(load_card(texts.path), doctest::Contains("expected a list of texts in quotes"),
+                         InputError);
+}
+
+TEST_CASE("card: files of a value are kept, and its warnings go with every material made from it") {
+    const CardFile file("card.toml",
+                        "name = \"knit\"\nwarnings = [\"E_f is odd\"]\n[[set]]\nprestretch = 1.5\n" +
+                            every_value_but("alpha_1_mpa") + alpha_1(0.1, ", files = [\"a.csv sha256:00\"]"));
+    CHECK(load_card(file.path).sets.at(0).values.at("alpha_1").files ==
+          std::vector<std::string>{"a.csv sha256:00"});
+    CHECK(resolve_card(file.path, {1.5, 1.5}).warnings == std::vector<std::string>{"card knit: E_f is odd"});
 }
 
 TEST_CASE("card: an unknown name suggests the nearest") {

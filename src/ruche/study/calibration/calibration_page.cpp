@@ -1,0 +1,180 @@
+#include "ruche/study/calibration/calibration_page.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "ruche/study/calibration/calibration_plots.hpp"
+#include "ruche/study/calibration/plot.hpp"
+
+namespace ruche {
+namespace {
+
+constexpr std::string_view style = R"(<style>
+body { font: 15px/1.5 system-ui, sans-serif; color: #1a1a1a; max-width: 1120px; margin: 2em auto; padding: 0 1em; }
+h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2em; border-bottom: 1px solid #ccc; }
+table { border-collapse: collapse; } th, td { text-align: left; padding: .25em .8em .25em 0; vertical-align: top;
+border-bottom: 1px solid #e5e5e5; } td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.bad { color: #a33c00; } ul.warnings { background: #fff6e5; border-left: 4px solid #e69f00; padding: .6em 2em; }
+svg text { font: 11px system-ui, sans-serif; fill: #333; } svg text.title { font-weight: 600; font-size: 13px; }
+svg .grid { stroke: #e3e3e3; } .plots { display: flex; flex-wrap: wrap; gap: 8px; }
+small { color: #666; }
+</style>
+)";
+
+std::string paragraph(const std::string& text) { return "<p>" + html_escaped(text) + "</p>\n"; }
+
+std::string section(const std::string& title, const std::string& text, const std::string& plots) {
+    if (plots.empty()) return {};
+    return fmt::format("<h2>{}</h2>\n{}<div class=\"plots\">\n{}</div>\n", title, paragraph(text), plots);
+}
+
+std::string value_rows(const CardSet& set) {
+    std::string rows;
+    for (const Field<Material>& field : fields<Material>()) {
+        const auto found = set.values.find(std::string(bare_name(info(field))));
+        if (found == set.values.end()) continue;
+        const CardValue& value = found->second;
+        const bool doubtful = value.source.find("assumed") != std::string::npos ||
+                              value.source.find("NOT IDENTIFIABLE") != std::string::npos;
+        const std::string interval =
+            value.interval ? fmt::format("{:.5g} to {:.5g}", value.interval->at(0), value.interval->at(1))
+                           : "";
+        rows += fmt::format(
+            "<tr><td>{}</td><td class=\"n\">{:.6g}</td><td>{}</td><td "
+            "class=\"n\">{}</td><td{}>{}</td></tr>\n",
+            found->first, value.value, html_escaped(std::string(field.unit)), interval,
+            doubtful ? " class=\"bad\"" : "", html_escaped(value.source));
+    }
+    return rows;
+}
+
+std::string values(const Calibration& c) {
+    std::string html;
+    for (const CardSet& set : c.card.sets)
+        html += fmt::format(
+            "<h2>Values at a pre-stretch of {:g}</h2>\n<table><tr><th>value</th><th></th><th>unit</th>"
+            "<th>95 % interval</th><th>from</th></tr>\n{}</table>\n",
+            set.prestretch, value_rows(set));
+    return html;
+}
+
+std::string fit_table(const CalibratedSet& set) {
+    std::string rows;
+    for (std::size_t i = 0; i < set.curves.size(); ++i) {
+        const double angle = set.curves[i].angle_deg;
+        std::string left_out;
+        for (const LeftOutOrientation& l : set.fit.left_out)
+            if (l.angle_deg == angle) left_out = fmt::format("{:.2f} %", 100.0 * l.error);
+        const double nu = set.poissons_ratios[i];
+        rows += fmt::format(
+            "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.2f} %</td><td class=\"n\">{}</td>"
+            "<td class=\"n\">{}</td></tr>\n",
+            html_escaped(set.curves[i].name), set.tests[i].largest_stretch(), 100.0 * set.fit.rms[i],
+            left_out, std::isnan(nu) ? "" : fmt::format("{:.3f}", nu));
+    }
+    return "<table><tr><th>test</th><th>up to stretch</th><th>rms of the fit</th><th>predicted by the "
+           "others</th>"
+           "<th>-E22/E11</th></tr>\n" +
+           rows + "</table>\n";
+}
+
+std::string fit_text(const CalibratedSet& set, FitMode mode) {
+    std::string html =
+        "<p>" + html_escaped(mode == FitMode::joint
+                                 ? "All orientations at once; transverse and shear strain free."
+                                 : "Each axis by itself, as the paper does.");
+    if (set.grip_rounds > 0)
+        html += fmt::format(
+            " The clamped samples were simulated {} times; their grips change the force by up to "
+            "{:.2f} %.",
+            set.grip_rounds, 100.0 * set.largest_grip_effect);
+    html += "</p>\n" + fit_table(set);
+    if (!set.fit.correlations.empty()) {
+        html += "<p>Hardly told apart by these data: ";
+        for (const Correlation& c : set.fit.correlations) {
+            const auto name = [](std::size_t i) {
+                for (const Field<Material>& field : fields<Material>())
+                    if (const auto* m = std::get_if<double Material::*>(&field.member);
+                        m != nullptr && *m == law_parameters[i])
+                        return std::string(bare_name(info(field)));
+                return std::string();
+            };
+            html += fmt::format("{} and {} ({:+.3f}); ", name(c.first), name(c.second), c.value);
+        }
+        html += "a change of one is made up for by the other.</p>\n";
+    }
+    if (set.sheared_alpha_3)
+        html += fmt::format(
+            "<p>The shear tests, the free sides of their samples simulated, give alpha_3 = {:.4g} "
+            "({:.4g} to {:.4g}) MPa; the tension tests {:.4g} MPa.</p>\n",
+            set.sheared_alpha_3->value, set.sheared_alpha_3->low, set.sheared_alpha_3->high,
+            set.fit.material.alpha_3);
+    const FabricModulus& m = set.fabric_modulus;
+    html += fmt::format(
+        "<p>Young's modulus of the fabric under plastic: secant {:.4g} ± {:.2g}, tangent {:.4g} ± {:.2g} "
+        "(spread over "
+        "orientations), working {:.4g} MPa; in the card {:.4g} MPa. A narrow strip with 0.6 mm of plastic "
+        "gets a "
+        "curvature of {:.4g}/mm, with the working value {:.4g}/mm.</p>\n",
+        m.secant, m.secant_spread, m.tangent, m.tangent_spread, m.working,
+        set.fit.material.fabric_youngs_modulus, set.curvature_used, set.curvature_working);
+    return html;
+}
+
+std::string printed(const Calibration& c) {
+    if (!c.printed) return {};
+    std::string html = fmt::format(
+        "<h2>Printed samples</h2>\n<p>{} = {:.4g} ({:.4g} to {:.4g}) meets the radii "
+        "best.</p>\n<table><tr><th>sample</th><th>measured</th><th>simulated</th></tr>\n",
+        c.printed->parameter, c.printed->value, c.printed->low, c.printed->high);
+    for (const PrintedOutcome& o : c.printed->samples)
+        html +=
+            fmt::format("<tr><td>{}</td><td class=\"n\">{:.4g} mm</td><td class=\"n\">{:.4g} mm</td></tr>\n",
+                        html_escaped(to_string(o.sample.place)), o.sample.radius_mm, o.simulated_radius_mm);
+    return html + "</table>\n";
+}
+
+std::string files(const Calibration& c) {
+    std::string html = "<h2>Files</h2>\n<ul>\n";
+    for (const CalibratedSet& set : c.sets) {
+        for (const TensionCurve& test : set.tests) {
+            html += "<li>" + html_escaped(test.record.file) + "<br><small>";
+            for (const std::string& column : test.record.columns) html += html_escaped(column) + "; ";
+            html += fmt::format("{} rows, {} cycles</small></li>\n", test.record.size(), test.cycles.size());
+        }
+    }
+    return html + "</ul>\n";
+}
+
+}  // namespace
+
+std::string calibration_page(const Calibration& c) {
+    const std::string title = html_escaped("Calibration of " + c.card.name);
+    std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
+                       "</title>\n" + std::string(style) + "</head><body>\n<h1>" + title + "</h1>\n";
+    if (!c.card.description.empty()) html += paragraph(c.card.description);
+    if (!c.warnings.empty()) {
+        html += "<ul class=\"warnings\">\n";
+        for (const std::string& warning : c.warnings) html += "<li>" + html_escaped(warning) + "</li>\n";
+        html += "</ul>\n";
+    }
+    html += values(c);
+    for (const CalibratedSet& set : c.sets) {
+        const std::string at = fmt::format("Fabric at a pre-stretch of {:g}", set.prestretch);
+        html += fmt::format("<h2>{}: the law</h2>\n{}<div class=\"plots\">\n{}</div>\n", at,
+                            fit_text(set, c.campaign.options.mode), law_plots(set));
+        html +=
+            section(at + ": the tests", "Every recorded row; green is the branch that the law is fitted to.",
+                    cycle_plots(set));
+    }
+    html += section("Shear", "Lines are drawn over the range that counts as linear.", shear_plots(c));
+    html += section("Bending", "A strip that hangs over by L; the curve is that of every elastic strip.",
+                    bending_plots(c));
+    html += section("Plastic", "Young's modulus is the tangent at zero.", plastic_plots(c));
+    html += printed(c);
+    html += files(c);
+    return html + "</body></html>\n";
+}
+
+}  // namespace ruche

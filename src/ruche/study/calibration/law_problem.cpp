@@ -1,0 +1,204 @@
+#include "ruche/study/calibration/law_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ruche/study/calibration/statistics.hpp"
+
+namespace ruche {
+namespace {
+
+constexpr std::size_t alpha_1 = 0, alpha_3 = 2, beta_1 = 3, gamma_1 = 5, poisson = 7;
+
+double largest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
+
+/// The curve whose pull is nearest to a fabric axis.
+const LawCurve& nearest(std::span<const LawCurve> curves, int axis) {
+    const auto along = [&](const LawCurve& c) {
+        const double turn = c.angle_deg * 3.14159265358979 / 180.0;
+        return std::abs(axis == 0 ? std::cos(turn) : std::sin(turn));
+    };
+    return *std::max_element(curves.begin(), curves.end(),
+                             [&](const auto& a, const auto& b) { return along(a) < along(b); });
+}
+
+}  // namespace
+
+LawProblem::LawProblem(std::span<const LawCurve> curves, const LawFitOptions& options)
+    : curves_(curves), options_(options) {
+    for (std::size_t i = 0; i < law_parameter_count; ++i)
+        if (i != poisson || options.fit_poisson) free_.push_back(i);
+    double stress = 0.0;
+    double strain = 0.0;
+    int count = 0;
+    for (const LawCurve& curve : curves) {
+        Rows rows{.begin = count, .stress = static_cast<int>(curve.stretch.size())};
+        rows.transverse = static_cast<int>(curve.transverse.size());
+        rows.stress_scale = largest(curve.nominal_stress);
+        rows_.push_back(rows);
+        count += rows.stress + rows.transverse;
+        stress = std::max(stress, rows.stress_scale);
+        strain = std::max(strain, green_strain(largest(curve.stretch)));
+    }
+    // One per cent of what is largest: equal weights to begin with.
+    for (Rows& rows : rows_) {
+        rows.stress_deviation = 0.01 * stress;
+        rows.transverse_deviation = 0.01 * strain;
+    }
+    const auto size = static_cast<Eigen::Index>(free_.size());
+    problem_.residual_count = count;
+    problem_.low.resize(size);
+    problem_.high.resize(size);
+    for (Eigen::Index k = 0; k < size; ++k) {
+        const std::size_t i = free_[static_cast<std::size_t>(k)];
+        const double stiffness = stress / strain;
+        if (i <= alpha_3) {
+            problem_.low[k] = 1e-4 * stiffness;
+            problem_.high[k] = 1e3 * stiffness;
+        } else if (i < gamma_1) {
+            problem_.low[k] = 0.0;
+            problem_.high[k] = 1e3 * stiffness;
+        } else if (i < poisson) {
+            const int axis = static_cast<int>(i - gamma_1);
+            const double reached = green_strain(largest(nearest(curves, axis).stretch));
+            problem_.low[k] = reached * (1.0 + 1e-5);
+            problem_.high[k] = 25.0 * reached;
+        } else {
+            problem_.low[k] = -0.5;
+            problem_.high[k] = 0.95;
+        }
+    }
+    problem_.evaluate = [this](const Eigen::VectorXd& p, Eigen::VectorXd& r, Eigen::MatrixXd* j) {
+        return evaluate(p, r, j);
+    };
+}
+
+Eigen::VectorXd LawProblem::start() const {
+    Material m = options_.start;
+    const double nu = options_.fit_poisson ? 0.3 : m.fabric_poissons_ratio;
+    m.fabric_poissons_ratio = nu;
+    for (int axis = 0; axis < 2; ++axis) {
+        const LawCurve& curve = nearest(curves_, axis);
+        std::vector<double> green, stress;
+        for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
+            green.push_back(green_strain(curve.stretch[i]));
+            stress.push_back(curve.nominal_stress[i] / curve.stretch[i]);
+        }
+        const AxisFit fit = fit_axis(green, stress);
+        const auto k = static_cast<std::size_t>(axis);
+        m.*law_parameters[alpha_1 + k] = std::max(fit.alpha, 0.02 * fit.beta);
+        m.*law_parameters[beta_1 + k] = fit.beta;
+        m.*law_parameters[gamma_1 + k] = fit.gamma;
+    }
+    m.alpha_3 = std::sqrt(m.alpha_1 * m.alpha_2) / (1.0 + nu);
+    Eigen::VectorXd p(free_.size());
+    for (std::size_t k = 0; k < free_.size(); ++k)
+        p[static_cast<Eigen::Index>(k)] = m.*law_parameters[free_[k]];
+    return p.cwiseMax(problem_.low).cwiseMin(problem_.high);
+}
+
+Material LawProblem::material(const Eigen::VectorXd& p) const {
+    Material m = options_.start;
+    for (std::size_t k = 0; k < free_.size(); ++k)
+        m.*law_parameters[free_[k]] = p[static_cast<Eigen::Index>(k)];
+    return m;
+}
+
+bool LawProblem::evaluate(const Eigen::VectorXd& p, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian) const {
+    const Material m = material(p);
+    // Not in parallel: a curve takes a fraction of a millisecond, less than to wake a thread on a busy
+    // machine.
+    for (std::size_t i = 0; i < curves_.size(); ++i)
+        if (!evaluate_curve(i, m, r, jacobian)) return false;
+    return true;
+}
+
+bool LawProblem::evaluate_curve(std::size_t index, const Material& m, Eigen::VectorXd& r,
+                                Eigen::MatrixXd* jacobian) const {
+    const LawCurve& curve = curves_[index];
+    const Rows& rows = rows_[index];
+    if (rows.left_out) {
+        r.segment(rows.begin, rows.stress + rows.transverse).setZero();
+        if (jacobian != nullptr) jacobian->middleRows(rows.begin, rows.stress + rows.transverse).setZero();
+        return true;
+    }
+    Pull pull(m, {}, curve.angle_deg);
+    for (int i = 0; i < rows.stress; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        const double stretch = curve.stretch[row];
+        const PullPoint point = pull.at(green_strain(stretch), jacobian != nullptr);
+        if (!point.found) return false;
+        const double force = curve.force_ratio.empty() ? 1.0 : curve.force_ratio[row];
+        const double scale = stretch * force / rows.stress_deviation;
+        const int a = rows.begin + i;
+        r[a] = scale * point.stress - curve.nominal_stress[row] / rows.stress_deviation;
+        const int b = rows.begin + rows.stress + i;
+        const double width = curve.width_ratio.empty() ? 1.0 : curve.width_ratio[row];
+        if (rows.transverse > 0) {
+            const double model = green_strain(width * stretch_of(point.transverse));
+            r[b] = (model - curve.transverse[row]) / rows.transverse_deviation;
+        }
+        for (std::size_t k = 0; jacobian != nullptr && k < free_.size(); ++k) {
+            const auto column = static_cast<Eigen::Index>(k);
+            const auto parameter = static_cast<Eigen::Index>(free_[k]);
+            (*jacobian)(a, column) = scale * point.stress_by_parameter[parameter];
+            if (rows.transverse > 0)
+                (*jacobian)(b, column) =
+                    width * width * point.transverse_by_parameter[parameter] / rows.transverse_deviation;
+        }
+    }
+    return true;
+}
+
+std::vector<double> LawProblem::block(const Eigen::VectorXd& r, int begin, int count, double scale) const {
+    std::vector<double> values(static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) values[static_cast<std::size_t>(i)] = scale * r[begin + i];
+    return values;
+}
+
+void LawProblem::weigh(const LeastSquaresFit& fit) {
+    // Per curve the variance of its noise; what is beyond that is the law's misfit, the same for all.
+    const auto weigh_kind = [&](auto&& begin_of, auto&& count_of, double Rows::*deviation, double floor) {
+        double misfit = 0.0;
+        int curves = 0;
+        std::vector<double> noise;
+        for (const Rows& rows : rows_) {
+            const int count = count_of(rows);
+            noise.push_back(0.0);
+            if (count == 0) continue;
+            const std::vector<double> values = block(fit.residuals, begin_of(rows), count, rows.*deviation);
+            double mean_square = 0.0;
+            for (const double v : values) mean_square += v * v / count;
+            noise.back() = noise_variance(values);
+            misfit += mean_square - noise.back();
+            ++curves;
+        }
+        misfit = curves > 0 ? std::max(misfit / curves, 0.0) : 0.0;
+        for (std::size_t i = 0; i < rows_.size(); ++i)
+            rows_[i].*deviation = std::max(std::sqrt(noise[i] + misfit), floor);
+    };
+    double stress = 0.0;
+    for (const Rows& rows : rows_) stress = std::max(stress, rows.stress_scale);
+    weigh_kind([](const Rows& rows) { return rows.begin; }, [](const Rows& rows) { return rows.stress; },
+               &Rows::stress_deviation, 1e-9 * stress);
+    weigh_kind([](const Rows& rows) { return rows.begin + rows.stress; },
+               [](const Rows& rows) { return rows.transverse; }, &Rows::transverse_deviation, 1e-9);
+}
+
+double LawProblem::correlation(const LeastSquaresFit& fit) const {
+    std::vector<std::vector<double>> stresses;
+    for (const Rows& rows : rows_) stresses.push_back(block(fit.residuals, rows.begin, rows.stress, 1.0));
+    return correlation_length(stresses);
+}
+
+double LawProblem::relative_rms(const LeastSquaresFit& fit, std::size_t curve) const {
+    const Rows& rows = rows_[curve];
+    return fit.residuals.segment(rows.begin, rows.stress).norm() / std::sqrt(rows.stress) *
+           rows.stress_deviation / rows.stress_scale;
+}
+
+void LawProblem::leave_out(double angle_deg) {
+    for (std::size_t i = 0; i < curves_.size(); ++i) rows_[i].left_out = curves_[i].angle_deg == angle_deg;
+}
+
+}  // namespace ruche

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "ruche/study/calibration/law_fit.hpp"
+#include "ruche/study/calibration/least_squares.hpp"
+
+namespace ruche {
+
+/// The fit of fit_law as a least-squares problem: curves, weights and which parameters are free.
+class LawProblem {
+  public:
+    LawProblem(std::span<const LawCurve> curves, const LawFitOptions& options);
+    LawProblem(const LawProblem&) = delete;
+    LawProblem& operator=(const LawProblem&) = delete;
+
+    const LeastSquares& problem() const { return problem_; }
+    Eigen::VectorXd start() const;
+    Material material(const Eigen::VectorXd& p) const;
+    std::size_t parameter(int index) const { return free_[static_cast<std::size_t>(index)]; }
+    int parameter_count() const { return static_cast<int>(free_.size()); }
+
+    /// Standard deviations of stress and transverse strain from the residuals of a fit.
+    void weigh(const LeastSquaresFit& fit);
+    /// Mean number of rows that resemble each other.
+    double correlation(const LeastSquaresFit& fit) const;
+    /// Rms of a curve's stress over its largest.
+    double relative_rms(const LeastSquaresFit& fit, std::size_t curve) const;
+    /// Curves of an orientation get no weight.
+    void leave_out(double angle_deg);
+
+  private:
+    struct Rows {
+        int begin = 0;       // of its residuals
+        int stress = 0;      // rows
+        int transverse = 0;  // rows, 0 without widths
+        double stress_scale = 1.0;
+        double stress_deviation = 1.0;
+        double transverse_deviation = 1.0;
+        bool left_out = false;
+    };
+
+    bool evaluate(const Eigen::VectorXd& p, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian) const;
+    bool evaluate_curve(std::size_t index, const Material& m, Eigen::VectorXd& r, Eigen::MatrixXd* j) const;
+    std::vector<double> block(const Eigen::VectorXd& r, int begin, int count, double scale) const;
+
+    std::span<const LawCurve> curves_;
+    LawFitOptions options_;
+    std::vector<std::size_t> free_;
+    std::vector<Rows> rows_;
+    LeastSquares problem_;
+};
+
+}  // namespace ruche

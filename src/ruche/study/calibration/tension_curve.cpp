@@ -1,0 +1,248 @@
+#include "ruche/study/calibration/tension_curve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "ruche/study/calibration/pull.hpp"
+#include "ruche/study/calibration/statistics.hpp"
+
+namespace ruche {
+namespace {
+
+constexpr std::size_t fewest_rows = 6;
+constexpr std::size_t most_rows = 1500;  // of a branch in the fit; more add time, not knowledge
+constexpr double large_slack = 0.02;
+
+Place place(const TensionTest& test, int line = 0) { return {.file = test.file, .line = line}; }
+
+void flip_if_negative(TensionCurve& curve) {
+    TestRecord& r = curve.record;
+    const auto sum = [](const std::vector<double>& v) {
+        double s = 0.0;
+        for (const double x : v) s += x;
+        return s;
+    };
+    const auto flip = [](std::vector<double>& v) {
+        for (double& x : v) x = -x;
+    };
+    const auto [low, high] = std::minmax_element(r.displacement.begin(), r.displacement.end());
+    if (sum(r.force) < 0.0 && -*std::min_element(r.force.begin(), r.force.end()) >
+                                  2.0 * *std::max_element(r.force.begin(), r.force.end())) {
+        flip(r.force);
+        curve.warnings.push_back(r.file + ": the force is negative throughout; its sign was turned");
+    }
+    if (-*low > 2.0 * *high) {
+        flip(r.displacement);
+        curve.warnings.push_back(r.file + ": the displacement is negative; its sign was turned");
+    }
+}
+
+std::size_t choose_cycle(const TensionCurve& curve) {
+    const TensionTest& test = curve.test;
+    const bool unloading = test.branch == Branch::unloading;
+    const auto fits = [&](const Cycle& c) { return unloading ? c.unloads : c.peak > c.begin; };
+    if (test.cycle > 0) {
+        if (static_cast<std::size_t>(test.cycle) > curve.cycles.size())
+            throw InputError(place(test), fmt::format("there is no cycle {}: the file has {}", test.cycle,
+                                                      curve.cycles.size()));
+        const auto chosen = static_cast<std::size_t>(test.cycle - 1);
+        if (fits(curve.cycles[chosen])) return chosen;
+    } else {
+        for (std::size_t i = curve.cycles.size(); i-- > 0;)
+            if (fits(curve.cycles[i])) return i;
+    }
+    const std::size_t last = curve.record.size() - 1;
+    throw InputError(place(test, curve.record.line[last]),
+                     fmt::format("there is no {} in this test",
+                                 unloading ? "unloading: the displacement never comes back" : "loading"),
+                     unloading
+                         ? "Fabric on a frame is released, so the unloading branch counts. Record a whole "
+                           "cycle, or say branch = \"loading\" and take the result with care."
+                         : "");
+}
+
+void warn_of_falls(TensionCurve& curve) {
+    for (const Cycle& cycle : curve.cycles) {
+        const std::vector<std::size_t> falls = sudden_falls(curve.record, cycle);
+        if (falls.empty()) continue;
+        curve.warnings.push_back(
+            fmt::format("{}:{}: the force falls suddenly while the sample is stretched: a grip slipped or a "
+                        "yarn broke; the rest length is wrong from here on",
+                        curve.record.file, curve.record.line[falls.front()]));
+        return;
+    }
+}
+
+/// Where stretch begins, in displacement.
+double zero_of(TensionCurve& curve, const Cycle& cycle) {
+    const TestRecord& r = curve.record;
+    const double slack = slack_of(r, curve.cycles.front());
+    const double start = r.displacement[curve.cycles.front().begin];
+    if (std::abs(start) > large_slack * curve.test.length_mm &&
+        curve.cycles.front().begin < curve.cycles.front().peak)
+        curve.warnings.push_back(
+            fmt::format("{}: the displacement begins at {:.3g} mm; length_mm is taken as the "
+                        "length at displacement 0",
+                        r.file, start));
+    switch (curve.test.rest_length) {
+        case RestLength::gauge:
+            return 0.0;
+        case RestLength::toe:
+            return start + slack;
+        case RestLength::unloaded: {
+            // The last row of the branch that pulls, along the slope of its last tenth.
+            const double small = 0.02 * r.force[cycle.peak];
+            std::size_t last = cycle.peak;
+            while (last + 1 < cycle.end && r.force[last + 1] > small) ++last;
+            return r.displacement[last];
+        }
+        case RestLength::automatic:
+            break;
+    }
+    if (slack < large_slack * curve.test.length_mm) return 0.0;
+    curve.warnings.push_back(
+        fmt::format("{}: {:.3g} mm of slack before the sample pulls ({:.1f} % of its length) were taken off; "
+                    "mount it without, or set rest_length",
+                    r.file, slack, 100.0 * slack / curve.test.length_mm));
+    return start + slack;
+}
+
+void check_plausible(const TensionCurve& curve) {
+    const TensionTest& test = curve.test;
+    const double stretch = curve.largest_stretch();
+    if (stretch > 4.0 || stretch < 1.0 + 0.1 * (test.prestretch - 1.0))
+        throw InputError(
+            place(test),
+            fmt::format("stretches the sample to {:.4g} times its length; {:.4g} was expected", stretch,
+                        test.prestretch),
+            "Is the displacement in another unit, is length_mm right, are force and displacement "
+            "swapped? See force_unit and displacement_unit of [columns].");
+    const double pull =
+        *std::max_element(curve.record.force.begin(), curve.record.force.end()) / test.width_mm;
+    constexpr double softest = 1e-3;
+    constexpr double hardest = 30.0;
+    if (pull < softest || pull > hardest)
+        throw InputError(
+            place(test),
+            fmt::format("pulls with {:.3g} N per mm of width; knits pull with 0.01 to 5 N/mm", pull),
+            "Is the force in another unit (force_unit in [columns]), is width_mm right?");
+}
+
+void check_swapped(const TensionCurve& curve) {
+    // What a machine drives goes straight in time, or turns at once; what it measures bends.
+    const Cycle& c = curve.cycles.front();
+    if (c.peak < c.begin + 20 || curve.record.driven_by_force) return;
+    std::vector<double> index, way, force;
+    for (std::size_t i = c.begin; i <= c.peak; ++i) {
+        index.push_back(static_cast<double>(i));
+        way.push_back(curve.record.displacement[i]);
+        force.push_back(curve.record.force[i]);
+    }
+    const double way_bend = fit_line(index, way).rms / (*std::max_element(way.begin(), way.end()) + 1e-300);
+    const double force_bend =
+        fit_line(index, force).rms / (*std::max_element(force.begin(), force.end()) + 1e-300);
+    if (way_bend < 0.02 || force_bend > 0.2 * way_bend) return;
+    throw InputError(place(curve.test, curve.record.line[c.begin]),
+                     "the force grows evenly and the displacement does not: are the two columns swapped?",
+                     "Name them in [columns]; a test that is driven by force can be given as a table of mass "
+                     "and length.");
+}
+
+void take_rows(TensionCurve& curve, double thickness) {
+    const TensionTest& test = curve.test;
+    const TestRecord& r = curve.record;
+    const Cycle& cycle = curve.cycles[curve.cycle];
+    const bool unloading = test.branch == Branch::unloading;
+    const std::size_t begin = unloading ? cycle.unloading() : cycle.begin;
+    const std::size_t end = unloading ? cycle.end : cycle.peak + 1;
+    const std::size_t stride = std::max<std::size_t>(1, (end - begin) / most_rows);
+    const double area = test.width_mm * thickness;
+    for (std::size_t i = begin; i < end; i += stride) {
+        const double stretch = 1.0 + (r.displacement[i] - curve.zero) / curve.rest_length;
+        if (stretch < 1.0 || (test.pretension_n > 0.0 && r.force[i] < test.pretension_n)) continue;
+        curve.stretch.push_back(stretch);
+        curve.nominal_stress.push_back(r.force[i] / area);
+        if (!r.width.empty()) curve.transverse.push_back(green_strain(r.width[i] / test.width_mm));
+    }
+    if (curve.stretch.size() < fewest_rows)
+        throw InputError(place(test, r.line[std::min(begin, r.size() - 1)]),
+                         fmt::format("the {} branch has {} rows; at least {} are needed",
+                                     unloading ? "unloading" : "loading", curve.stretch.size(), fewest_rows));
+}
+
+void check_widths(TensionCurve& curve) {
+    if (curve.transverse.empty()) return;
+    // Never below a third of the relaxed width, and near it where the sample is hardly stretched.
+    const auto [low, high] = std::minmax_element(curve.transverse.begin(), curve.transverse.end());
+    if (*low > green_strain(0.33) && *high < 0.2 && *high > -0.3) return;
+    curve.warnings.push_back(
+        fmt::format("{}: widths from {:.3g} to {:.3g} times width_mm make no sense and were "
+                    "left out",
+                    curve.record.file, std::sqrt(std::max(0.0, 1.0 + 2.0 * *low)), stretch_of(*high)));
+    curve.transverse.clear();
+}
+
+}  // namespace
+
+double TensionCurve::largest_stretch() const { return *std::max_element(stretch.begin(), stretch.end()); }
+double TensionCurve::largest_stress() const {
+    return *std::max_element(nominal_stress.begin(), nominal_stress.end());
+}
+
+std::string file_name(const std::string& path) { return std::filesystem::path(path).filename().string(); }
+
+std::string TensionCurve::name() const {
+    return fmt::format("{} ({:g} deg)", file_name(test.file), test.angle_deg);
+}
+
+TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
+    TensionCurve curve{.test = test, .rest_length = test.length_mm};
+    const CsvTable table = read_csv_table(test.file);
+    curve.record =
+        read_record(table, {.columns = test.columns, .length_mm = test.length_mm, .width_mm = test.width_mm});
+    curve.warnings = curve.record.warnings;
+    if (curve.record.size() < fewest_rows)
+        throw InputError(place(test), fmt::format("has {} rows of numbers; at least {} are needed",
+                                                  curve.record.size(), fewest_rows));
+    flip_if_negative(curve);
+    curve.cycles = find_cycles(curve.record);
+    if (curve.cycles.empty())
+        throw InputError(place(test), "the displacement never changes",
+                         "Name the column in [columns]: displacement = \"...\".");
+    curve.cycle = choose_cycle(curve);
+    curve.zero = zero_of(curve, curve.cycles[curve.cycle]);
+    curve.rest_length = test.length_mm + curve.zero;
+    take_rows(curve, thickness);
+    check_plausible(curve);
+    check_swapped(curve);
+    check_widths(curve);
+    warn_of_falls(curve);
+    if (curve.largest_stretch() < 1.0 + 0.8 * (test.prestretch - 1.0))
+        curve.warnings.push_back(fmt::format(
+            "{}: measured up to a stretch of {:.3f} only, used at {:.3g}: beyond the data the law is "
+            "a guess",
+            curve.record.file, curve.largest_stretch(), test.prestretch));
+    if (test.branch == Branch::loading)
+        curve.warnings.push_back(curve.record.file +
+                                 ": the loading branch was taken; fabric that is released is softer");
+    return curve;
+}
+
+double mean_poissons_ratio(const TensionCurve& curve) {
+    if (curve.transverse.empty()) return std::numeric_limits<double>::quiet_NaN();
+    const double largest = green_strain(curve.largest_stretch());
+    double sum = 0.0;
+    int count = 0;
+    for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
+        const double axial = green_strain(curve.stretch[i]);
+        if (axial < 0.1 * largest) continue;
+        sum -= curve.transverse[i] / axial;
+        ++count;
+    }
+    return count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace ruche
