@@ -15,12 +15,14 @@ constexpr double kilo = 1e3;  // MPa to kPa
 
 std::vector<double> scaled(const std::vector<double>& values, double factor) {
     std::vector<double> result;
+    result.reserve(values.size());
     for (const double v : values) result.push_back(factor * v);
     return result;
 }
 
 std::vector<double> greens(const std::vector<double>& stretches) {
     std::vector<double> result;
+    result.reserve(stretches.size());
     for (const double s : stretches) result.push_back(green_strain(s));
     return result;
 }

@@ -61,6 +61,7 @@ CardValue areal_density(const FabricMeasurements& f) {
     if (f.sample_mass_g.empty())
         return assumed(Material{}.fabric_areal_density, "nobody measured it; the paper's fabric");
     std::vector<double> densities;
+    densities.reserve(f.sample_mass_g.size());
     for (const double mass : f.sample_mass_g) densities.push_back(1e3 * mass / f.sample_area_mm2);
     return mean_of(densities, fmt::format("measured: mass of {:g} mm^2", f.sample_area_mm2));
 }

@@ -31,6 +31,7 @@ void correct(LawCurve& curve, const TensionCurve& test, const Material& material
     const double least = std::max(*low, 1.0 + 0.02 * (*high - 1.0));  // at rest the ratio is 0/0
     std::vector<double> stretches = chebyshev(least, *high);
     std::vector<double> strains;
+    strains.reserve(stretches.size());
     for (const double s : stretches) strains.push_back(s - 1.0);
     const ClampedSample sample{.length_mm = test.rest_length,
                                .width_mm = test.test.width_mm,

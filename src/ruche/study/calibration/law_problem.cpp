@@ -187,6 +187,7 @@ void LawProblem::weigh(const LeastSquaresFit& fit) {
 
 double LawProblem::correlation(const LeastSquaresFit& fit) const {
     std::vector<std::vector<double>> stresses;
+    stresses.reserve(rows_.size());
     for (const Rows& rows : rows_) stresses.push_back(block(fit.residuals, rows.begin, rows.stress, 1.0));
     return correlation_length(stresses);
 }

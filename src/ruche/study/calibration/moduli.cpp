@@ -77,6 +77,7 @@ static Spread mean_slope(std::span<const LawCurve> curves, double share) {
         if (green.size() > 2) by_angle[curve.angle_deg].push_back(fit_line(green, stress).slope);
     }
     std::vector<double> slopes;
+    slopes.reserve(by_angle.size());
     for (const auto& [angle, values] : by_angle) slopes.push_back(spread(values).mean);
     return spread(slopes);
 }

@@ -100,6 +100,7 @@ void fit_printed_samples(Calibration& calibration, const Control& control) {
     }
     const Adjusted what = adjusted(campaign.printed_fit.parameter);
     std::vector<Sample> samples;
+    samples.reserve(campaign.printed.size());
     for (const PrintedSample& sample : campaign.printed) samples.emplace_back(sample, card);
 
     double q = std::log(samples.front().start(what.member));

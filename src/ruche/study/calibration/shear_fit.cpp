@@ -131,6 +131,7 @@ double simulated_share(const ShearCurve& curve, const Material& material, double
         {.length_mm = test.height_mm, .width_mm = test.width_mm, .angle_deg = test.angle_deg}, material,
         shears);
     std::vector<double> stress;
+    stress.reserve(response.force_N.size());
     for (const double force : response.force_N)
         stress.push_back(force / (test.width_mm * material.fabric_thickness));
     if (!response.converged) return 1.0;
