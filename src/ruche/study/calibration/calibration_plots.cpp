@@ -167,7 +167,7 @@ std::string bending_plots(const Calibration& calibration) {
 std::string plastic_plots(const Calibration& calibration) {
     std::string svg;
     for (const PlasticCurve& curve : calibration.plastic) {
-        const double end = 3.0 * curve.test.window;
+        const double end = std::min(2.0 * curve.test.window, curve.strain.back());
         svg += svg_plot({.title = "Plastic: " + file_name(curve.test.file),
                          .x_label = "engineering strain",
                          .y_label = "engineering stress (MPa)",
