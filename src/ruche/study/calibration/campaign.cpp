@@ -118,23 +118,24 @@ class Reader {
         return reader;
     }
 
-    void read_columns(TableReader& reader, TestFile& test) const {
+    /// What all tests with a file have in common.
+    void finish(TableReader& reader, TestFile& test, std::initializer_list<std::string_view> keys) const {
+        require(reader, keys);
+        require_file(test, folder_, reader);
         test.columns = columns_;
         if (const Node* node = reader.take_table("columns")) {
             TableReader own(*node, reader.path_of("columns"));
             own.read(test.columns);
             own.finish();
         }
+        reader.finish();
     }
 
     void read_tension(const Node& node) {
         TensionTest test;
         test.prestretch = campaign_.options.prestretch;
         TableReader reader = begin(node, "tension", campaign_.tension.size() + 1, test);
-        require(reader, {"file", "angle_deg", "length_mm", "width_mm"});
-        require_file(test, folder_, reader);
-        read_columns(reader, test);
-        reader.finish();
+        finish(reader, test, {"file", "angle_deg", "length_mm", "width_mm"});
         if (test.branch == Branch::unknown)
             throw InputError(reader.place_of_key("branch"), "expected \"unloading\" or \"loading\"");
         campaign_.tension.push_back(test);
@@ -143,20 +144,14 @@ class Reader {
     void read_shear(const Node& node) {
         ShearTest test;
         TableReader reader = begin(node, "shear", campaign_.shear.size() + 1, test);
-        require(reader, {"file", "angle_deg", "height_mm", "width_mm"});
-        require_file(test, folder_, reader);
-        read_columns(reader, test);
-        reader.finish();
+        finish(reader, test, {"file", "angle_deg", "height_mm", "width_mm"});
         campaign_.shear.push_back(test);
     }
 
     void read_plastic_tension(const Node& node) {
         PlasticTest test;
         TableReader reader = begin(node, "plastic_tension", campaign_.plastic_tension.size() + 1, test);
-        require(reader, {"file", "length_mm", "width_mm", "thickness_mm"});
-        require_file(test, folder_, reader);
-        read_columns(reader, test);
-        reader.finish();
+        finish(reader, test, {"file", "length_mm", "width_mm", "thickness_mm"});
         campaign_.plastic_tension.push_back(test);
     }
 
