@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "ruche/core/error.hpp"
-#include "ruche/meshing/structured.hpp"
 #include "ruche/study/clamped_sheet.hpp"
 
 namespace ruche {
@@ -41,9 +40,7 @@ double width_at(const ClampedSample& sample, double x) {
 }
 
 TriangleMesh mesh_of(const ClampedSample& sample) {
-    const int across = std::max(2, static_cast<int>(std::lround(sample.width_mm / sample.element_size_mm)));
-    TriangleMesh mesh = rectangle_mesh(
-        MeshKind::alternating, {.length = sample.length_mm, .width = sample.width_mm, .across = across});
+    TriangleMesh mesh = clamped_rectangle(sample.length_mm, sample.width_mm, sample.element_size_mm);
     const double axis = 0.5 * sample.width_mm;
     for (Vec2& p : mesh.vertices) p.y() = axis + (p.y() - axis) * width_at(sample, p.x()) / sample.width_mm;
     return mesh;

@@ -1,7 +1,9 @@
 #include "ruche/study/clamped_sheet.hpp"
 
 #include <algorithm>
+#include <cmath>
 
+#include "ruche/meshing/structured.hpp"
 #include "ruche/statics/equilibrium.hpp"
 
 namespace ruche {
@@ -82,6 +84,11 @@ ClampedSheet::State ClampedSheet::hold(const Vec2& displacement) {
         last_ = state;
     }
     return state;
+}
+
+TriangleMesh clamped_rectangle(double length_mm, double width_mm, double element_size_mm) {
+    const int across = std::max(2, static_cast<int>(std::lround(width_mm / element_size_mm)));
+    return rectangle_mesh(MeshKind::alternating, {.length = length_mm, .width = width_mm, .across = across});
 }
 
 }  // namespace ruche

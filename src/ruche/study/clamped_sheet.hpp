@@ -40,4 +40,7 @@ class ClampedSheet {
     std::optional<State> last_, before_last_;
 };
 
+/// The rectangle between two clamps that face each other along x, at least two elements across.
+TriangleMesh clamped_rectangle(double length_mm, double width_mm, double element_size_mm);
+
 }  // namespace ruche

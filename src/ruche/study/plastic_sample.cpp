@@ -1,11 +1,8 @@
 #include "ruche/study/plastic_sample.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "ruche/core/error.hpp"
-#include "ruche/meshing/structured.hpp"
 #include "ruche/study/clamped_sheet.hpp"
 
 namespace ruche {
@@ -16,11 +13,8 @@ PlasticResponse simulate_plastic(const PlasticSample& sample, const Material& ma
           sample.element_size_mm > 0.0))
         throw InputError({.key = "sample"}, "length, width, thickness and element size must be positive",
                          "Measure the printed strip.");
-    const double across = std::round(sample.width_mm / sample.element_size_mm);
     ModelInput sheet;
-    sheet.mesh = rectangle_mesh(MeshKind::alternating, {.length = sample.length_mm,
-                                                        .width = sample.width_mm,
-                                                        .across = std::max(2, static_cast<int>(across))});
+    sheet.mesh = clamped_rectangle(sample.length_mm, sample.width_mm, sample.element_size_mm);
     // The laminate without its fabric: half of the plastic on each side, so that pulling does not bend it.
     const double half = 0.5 * sample.thickness_mm;
     sheet.print.assign(sheet.mesh.triangles.size(), {.front = half, .back = half});

@@ -6,7 +6,6 @@
 #include <numeric>
 
 #include "ruche/core/error.hpp"
-#include "ruche/meshing/structured.hpp"
 #include "ruche/study/clamped_sheet.hpp"
 
 namespace ruche {
@@ -16,11 +15,8 @@ ShearedResponse simulate_sheared(const ShearedSample& sample, const Material& ma
     if (!(sample.length_mm > 0.0 && sample.width_mm > 0.0 && sample.element_size_mm > 0.0))
         throw InputError({.key = "sample"}, "length, width and element size must be positive",
                          "Measure the free length between the clamps and the width along them.");
-    const double across = std::round(sample.width_mm / sample.element_size_mm);
     ModelInput sheet;
-    sheet.mesh = rectangle_mesh(MeshKind::alternating, {.length = sample.length_mm,
-                                                        .width = sample.width_mm,
-                                                        .across = std::max(2, static_cast<int>(across))});
+    sheet.mesh = clamped_rectangle(sample.length_mm, sample.width_mm, sample.element_size_mm);
     sheet.material = material;
     sheet.prestretch = {1.0, 1.0};
     sheet.fabric_axis_deg = -sample.angle_deg;

@@ -5,12 +5,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCore>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 
 #include "ruche/core/parallel.hpp"
+#include "ruche/meshing/structured.hpp"
 
 using namespace ruche;
 
@@ -155,4 +157,29 @@ TEST_CASE("sparse Cholesky: same bits at any number of threads, where panels are
     }
     set_thread_count(before);
     CHECK((a.selfadjointView<Eigen::Lower>() * first - b).norm() < 1e-12 * b.norm());
+}
+
+TEST_CASE("sparse Cholesky: a model's nodes of one and of three unknowns are expanded in their places") {
+    ModelInput input;
+    input.mesh = rectangle_mesh(MeshKind::alternating, {.length = 6.0, .width = 3.0, .across = 4});
+    input.print.resize(input.mesh.triangles.size());
+    for (std::size_t t = 0; t < input.print.size() / 2; ++t) input.print[t].front = 0.5;
+    const Model model(std::move(input));
+    REQUIRE(model.size() > 3 * model.vertex_count());  // it has edge unknowns
+    AssembledSums sums;
+    model.evaluate(model.initial(), Order::gauss_newton, sums);
+    const auto& start = model.pattern().column_start();
+    Eigen::MatrixXd full = model.pattern().full_matrix(sums.hessian).toDense();
+    const double shift = 1e-3 * full.diagonal().mean();
+    for (int u = 0; u < model.size(); ++u) {
+        const auto* row = model.pattern().row_index().data();
+        const auto at = std::lower_bound(row + start[u], row + start[u + 1], u) - row;
+        sums.hessian[static_cast<std::size_t>(at)] += shift;
+    }
+    full.diagonal().array() += shift;
+    SparseCholesky sparse(model, vertex_elimination_order(model.pattern()));
+    REQUIRE(sparse.factorize(sums.hessian));
+    const Eigen::MatrixXd b = right_hand_sides(model.size(), 2);
+    const Eigen::MatrixXd expected = full.llt().solve(b);
+    CHECK((sparse.solve(b) - expected).norm() < 1e-9 * expected.norm());
 }
