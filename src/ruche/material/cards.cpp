@@ -139,6 +139,14 @@ static MaterialCard parse_card(const Node& root) {
     reader.read(title);
     MaterialCard card{.name = title.name, .description = title.description};
     card.warnings = take_texts(reader, "warnings");
+    if (const Node* node = reader.take("printed_thickness_mm"))
+        card.printed_thickness = read_card_value(*node,
+                                                 {.key = "printed_thickness_mm",
+                                                  .unit = "mm",
+                                                  .low = 1e-3,
+                                                  .high = 20,
+                                                  .meaning = "Measured thickness of the printed plastic."},
+                                                 "printed_thickness_mm");
     CardSet common;
     if (const Node* node = reader.take_table("common")) {
         TableReader values(*node, "common");

@@ -30,6 +30,8 @@ struct MaterialCard {
     std::string description;
     std::vector<CardSet> sets;          ///< pre-stretches increase
     std::vector<std::string> warnings;  ///< of its calibration; every simulation repeats them
+    /// Of the plastic that was measured, mm: a record. A scene says how thick it is printed.
+    std::optional<CardValue> printed_thickness;
 };
 
 /// Names of the cards that come with the program.

@@ -36,7 +36,7 @@ std::string campaign_text(const TestFolder& folder, const Material& truth, const
 const std::string stated =
     "name = \"knit\"\n[fabric]\nthickness_mm = [0.45, 0.46, 0.47]\nareal_density_kg_per_m2 = 0.2\n"
     "youngs_modulus = \"stated\"\nyoungs_modulus_mpa = 1.05\n[plastic]\nyoungs_modulus_mpa = 72.3\n"
-    "density_kg_per_m3 = 1210\n";
+    "density_kg_per_m3 = 1210\nthickness_mm = [0.58, 0.62]\n";
 
 }  // namespace
 
@@ -57,6 +57,10 @@ TEST_CASE("calibration: exact files of the closed law give a card with the param
     CHECK(card.material.plastic_youngs_modulus == 72.3);
     // What nobody measured says so, and every value that was fitted names its files with their hashes.
     CHECK(card.sources.at("fabric_bending_stiffness").starts_with("assumed"));
+    const std::optional<CardValue> printed = load_card(file).printed_thickness;
+    REQUIRE(printed);
+    CHECK(printed->value == doctest::Approx(0.6).epsilon(1e-12));
+    CHECK(printed->interval.has_value());
     const CardValue alpha = load_card(file).sets[0].values.at("alpha_1");
     REQUIRE(alpha.files.size() == 7);
     CHECK(alpha.files[0].find("sha256:") != std::string::npos);

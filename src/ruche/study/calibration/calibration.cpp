@@ -306,6 +306,8 @@ Calibration calibrate(const Campaign& campaign, const Control& control) {
     Calibration result{.campaign = campaign};
     result.card.name = campaign.options.name;
     result.card.description = campaign.options.description;
+    if (!campaign.plastic.thickness_mm.empty())
+        result.card.printed_thickness = mean_of(campaign.plastic.thickness_mm, "measured");
     if (!campaign.tension.empty()) Calibrator(result, control).run();
     if (!campaign.printed.empty()) fit_printed_samples(result, control);
     result.card.warnings = result.warnings;

@@ -263,6 +263,8 @@ std::string card_text(const MaterialCard& card) {
             text += fmt::format("    {},\n", toml_quoted(warning));
         text += "]\n";
     }
+    if (card.printed_thickness)
+        text += fmt::format("printed_thickness_mm = {}\n", value_text(*card.printed_thickness));
     for (const CardSet& set : card.sets) {
         text += fmt::format("\n[[set]]\nprestretch = {}\n", set.prestretch);
         for (const Field<Material>& field : fields<Material>()) {
