@@ -144,6 +144,7 @@ void add_render(CLI::App& program, Action& action) {
     verb->add_option("--height-px", portrait.height_px, "Height of the picture")
         ->check(CLI::Range(64, 16384));
     std::vector<std::string> names;
+    names.reserve(views.size());
     for (const auto& [name, direction] : views) names.push_back(name);
     verb->add_option("--view", arguments->view, "Look from there; else from where most can be seen")
         ->check(CLI::IsMember(names));
