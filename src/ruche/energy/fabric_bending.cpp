@@ -10,7 +10,7 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
     const Vec3 b = x.position(hinge.vertices[1]);
     const DihedralFrame left = dihedral_frame(a, b, x.position(hinge.vertices[2]));
     const DihedralFrame right = dihedral_frame(b, a, x.position(hinge.vertices[3]));
-    const double tangent = std::tan(0.5 * dihedral_angle(left, right));
+    const double tangent = half_angle_tangent(left, right);
     const double k = hinge.stiffness;
     Local<12> local;
     local.value = 2.0 * k * tangent * tangent;

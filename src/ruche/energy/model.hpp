@@ -146,6 +146,8 @@ class Model {
     };
     /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
     Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;
+    /// `nodes` and all that share an element with one of them, ascending.
+    std::vector<int> with_neighbours(std::span<const int> nodes) const;
     /// Energy of the elements that touch the patch, up to a constant; `sums` over the patch's unknowns, in
     /// their order. Costs in proportion to the patch, not to the sheet.
     double evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const;

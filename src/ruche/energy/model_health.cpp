@@ -47,22 +47,28 @@ Health Model::health(const Eigen::VectorXd& x) const {
     }
     health.beyond_law = elements_beyond_law(x);
     const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
+    std::vector<Vec3> normals(mesh.triangles.size());
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Triangle& tri = mesh.triangles[t];
         const Vec3 a = unknowns.position(tri[0]);
-        const double area = 0.5 * (unknowns.position(tri[1]) - a).cross(unknowns.position(tri[2]) - a).norm();
+        const Vec3 normal = (unknowns.position(tri[1]) - a).cross(unknowns.position(tri[2]) - a);
+        const double twice_area = normal.norm();
         const double rest = layout_area(mesh, t) * (parts_->input.print[t].bare() ? relaxed_share : 1.0);
-        health.min_area_ratio = std::min(health.min_area_ratio, area / rest);
+        health.min_area_ratio = std::min(health.min_area_ratio, 0.5 * twice_area / rest);
+        normals[t] = normal / twice_area;
     }
+    double sharpest = 1.0;  // cosine
+    Vec3 sine = Vec3::Zero();
     for (const Edge& edge : parts_->edges.edges) {
         if (edge.on_boundary()) continue;
-        const Vec3 a = unknowns.position(edge.vertex[0]);
-        const Vec3 b = unknowns.position(edge.vertex[1]);
-        const Vec3 c = unknowns.position(mesh.triangles[edge.triangle[0]][edge.local[0]]);
-        const Vec3 d = unknowns.position(mesh.triangles[edge.triangle[1]][edge.local[1]]);
-        const double theta = dihedral_angle(dihedral_frame(a, b, c), dihedral_frame(b, a, d));
-        health.max_dihedral_deg = std::max(health.max_dihedral_deg, std::abs(theta) * degrees);
+        const Vec3& left = normals[edge.triangle[0]];
+        const Vec3& right = normals[edge.triangle[1]];
+        const double cosine = left.dot(right);
+        if (!(cosine <= sharpest)) continue;
+        sharpest = cosine;
+        sine = left.cross(right);
     }
+    health.max_dihedral_deg = std::atan2(sine.norm(), sharpest) * degrees;
     const LaminateTerm& laminate = parts_->laminate->term();
     for (int e = 0; e < laminate.element_count(); ++e) {
         health.max_edge_rotation_deg =

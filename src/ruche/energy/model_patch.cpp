@@ -33,6 +33,20 @@ Model::Patch Model::patch(std::span<const int> nodes, std::span<const char> held
     return patch;
 }
 
+std::vector<int> Model::with_neighbours(std::span<const int> nodes) const {
+    std::vector<int> found(nodes.begin(), nodes.end());
+    parts_->for_each_term([&](const auto& assembly) {
+        for (const int element : assembly.elements_at(nodes)) {
+            for (const int node : assembly.term().nodes(element)) {
+                if (node >= 0) found.push_back(node);
+            }
+        }
+    });
+    std::sort(found.begin(), found.end());
+    found.erase(std::unique(found.begin(), found.end()), found.end());
+    return found;
+}
+
 double Model::evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(patch.size());

@@ -83,4 +83,9 @@ inline double dihedral_angle(const DihedralFrame& left, const DihedralFrame& rig
     return std::atan2(right.n.cross(left.n).dot(left.e), left.n.dot(right.n));
 }
 
+/// tan(theta / 2) from the same, without a trigonometric function; infinite at |theta| = pi.
+inline double half_angle_tangent(const DihedralFrame& left, const DihedralFrame& right) {
+    return right.n.cross(left.n).dot(left.e) / (1.0 + left.n.dot(right.n));
+}
+
 }  // namespace ruche

@@ -104,7 +104,11 @@ std::optional<MeshPoint> PointLocator::find(const Vec2& point, double reach,
         }
     };
     search(0.0);
-    if (best.distance > 0.0 && reach > 0.0) search(reach);
+    // In growing boxes: what lies outside one is farther away than it reaches.
+    for (double around = 0.0; best.distance > around && around < reach;) {
+        around = std::min(reach, around > 0.0 ? 2.0 * around : spacing_);
+        search(around);
+    }
     if (found < 0) return {};
     return MeshPoint{found, {best.weights[0], best.weights[1], best.weights[2]}};
 }

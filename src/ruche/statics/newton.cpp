@@ -117,8 +117,7 @@ bool Newton::line_search() {
         }
         if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
             // A few spots that it has thrown far off must not shorten the step of the whole sheet.
-            elimination_(model(), candidate, trial_.gradient, before);
-            trial = evaluate(candidate, Order::gradient, trial_).total();
+            trial -= elimination_(model(), candidate, trial_.gradient, before);
             lower = is_lower() && may_take(candidate);
         }
         if (lower) {
@@ -136,11 +135,13 @@ void Newton::relax_spots() {
     constexpr double converging = 0.01;
     constexpr int most_sweeps = 2;
     for (int sweep = 0; sweep < most_sweeps && largest(trial_) > converging * residual(); ++sweep) {
-        if (sweep > 0) evaluate(x_, Order::gradient, trial_);
         const Eigen::VectorXd from = x_;
         elimination_(model(), x_, trial_.gradient);
         // It knows neither of tangles nor of obstacles that are not near already.
-        if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) x_ = from;
+        if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) {
+            x_ = from;
+            break;
+        }
         cover_contacts(x_);
     }
 }
@@ -212,15 +213,19 @@ Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     Eigen::VectorXd x = transfer(start, model(), retraction_);
     // Where the old mesh was too coarse, at corners of strips, small elements come out crushed or folded
     // over.
-    constexpr int most_sweeps = 10;
-    constexpr double worth = 0.99;
-    double energy = infinity;
-    for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-        const double before = std::exchange(energy, evaluate(x, Order::gradient, trial_).total());
-        if (!std::isfinite(energy) || energy > worth * before) break;
-        elimination_(model(), x, trial_.gradient);
-    }
+    relax_while(x, 0.01);
     return x;
+}
+
+/// Nonlinear elimination at `x` as long as a sweep lowers the energy by a share `worth` of it.
+void Newton::relax_while(Eigen::VectorXd& x, double worth) {
+    constexpr int most_sweeps = 10;
+    double energy = evaluate(x, Order::gradient, trial_).total();
+    for (int sweep = 0; sweep < most_sweeps && std::isfinite(energy); ++sweep) {
+        const double fell = elimination_(model(), x, trial_.gradient);
+        energy -= fell;
+        if (fell < worth * energy) break;
+    }
 }
 
 Equilibrium Newton::run(const Eigen::VectorXd& start) {
@@ -291,7 +296,10 @@ void Newton::iterate(Equilibrium& result) {
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
-        if ((rotation_ < settled || residual() <= tolerance) && narrow_extension()) evaluate(order);
+        if ((rotation_ < settled || residual() <= tolerance) && narrow_extension()) {
+            relax_while(x_, 1e-9);
+            evaluate(order);
+        }
         report();
         if (is_good(x_)) last_good_ = x_;
         result.residual = residual();

@@ -65,6 +65,7 @@ class Newton {
     void cover_contacts(const Eigen::VectorXd& x);
     bool line_search();
     void relax_spots();
+    void relax_while(Eigen::VectorXd& x, double worth);
     bool leave_saddle();
     std::string missing_memory() const;
     void report() const;

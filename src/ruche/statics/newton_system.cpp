@@ -75,7 +75,8 @@ void NewtonSystem::adapt(bool halved) {
 /// definite.
 bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd& step) {
     constexpr double accuracy = 1e-3;  // of the residual
-    constexpr int most_steps = 4;      // a solve costs about a tenth of a factorisation
+    constexpr int most_steps = 6;      // a solve costs about a tenth of a factorisation
+    constexpr double hopeful = 0.3;    // by which each step has to lower the residual
     build_matrix(at, Order::hessian, 0.0);
     const NodePattern& pattern = at.model.pattern();
     const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
@@ -92,7 +93,9 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd
         if (!(curvature > 0.0)) return false;
         step += (product / curvature) * direction;
         rest -= (product / curvature) * pull;
-        if (rest.norm() < enough) return true;
+        const double left = rest.norm();
+        if (left < enough) return true;
+        if (left > std::pow(hopeful, i + 1) * enough / accuracy) return false;
         const Eigen::VectorXd next = cholesky_.solve(rest);
         const double next_product = rest.dot(next);
         direction = next + (next_product / product) * direction;

@@ -2,9 +2,9 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 #include "ruche/core/parallel.hpp"
 
@@ -18,8 +18,9 @@ constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and it
 constexpr int most_steps = 8;
 constexpr double good_enough = 1e-3;  // of the spot's first residual
 
-/// Newton's method on a spot: exact Hessian, shifted until it is positive definite, Armijo's rule.
-bool relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
+/// Newton's method on a spot: exact Hessian, shifted until it is positive definite, Armijo's rule. Returns
+/// by how much the energy fell.
+double relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
     const auto gather = [&] {
         Eigen::VectorXd values(patch.size());
         for (int i = 0; i < patch.size(); ++i) values[i] = x[patch.unknowns()[i]];
@@ -31,7 +32,7 @@ bool relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
     DenseSums sums;
     DenseSums none;
     Eigen::LLT<Eigen::MatrixXd> factor;
-    bool moved = false;
+    double fell = 0.0;
     double first_residual = 0.0;
     for (int step = 0; step < most_steps; ++step) {
         const double energy = model.evaluate(patch, x, Order::hessian, sums);
@@ -53,14 +54,14 @@ bool relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
             place(from + t * direction);
             const double trial = model.evaluate(patch, x, Order::value, none);
             lower = std::isfinite(trial) && trial <= energy + 1e-4 * t * slope;
+            if (lower) fell += energy - trial;
         }
         if (!lower) {
             place(from);
             break;
         }
-        moved = true;
     }
-    return moved;
+    return fell;
 }
 
 }  // namespace
@@ -115,15 +116,21 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pat
     return found;
 }
 
-bool NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
-                                      double much) {
+double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
+                                        double much) {
     const std::vector<std::vector<int>> all = spots(model.pattern(), gradient, much);
-    std::atomic<bool> moved = false;
+    std::vector<double> fell(all.size());
     // No element touches two spots: they do not see each other move.
-    parallel_for(all.size(), [&](std::size_t i) {
-        if (relax(model, model.patch(all[i], held_), x)) moved = true;
-    });
-    return moved;
+    parallel_for(all.size(),
+                 [&](std::size_t i) { fell[i] = relax(model, model.patch(all[i], held_), x); });
+    DenseSums sums;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (fell[i] == 0.0) continue;
+        const Model::Patch around = model.patch(model.with_neighbours(all[i]), held_);
+        model.evaluate(around, x, Order::gradient, sums);
+        for (int k = 0; k < around.size(); ++k) gradient[around.unknowns()[k]] = sums.gradient[k];
+    }
+    return std::accumulate(fell.begin(), fell.end(), 0.0);
 }
 
 }  // namespace ruche

@@ -17,11 +17,11 @@ class NonlinearElimination {
     /// `held`: one flag per unknown that a support fixes; must outlive this.
     NonlinearElimination(const Model& model, const std::vector<char>& held);
 
-    /// Moves x, whose gradient is given, to lower energy; false when there was no such spot. A spot is where
-    /// the force is a good part of the largest one, or more than `much` (N). `model` is the one given to the
-    /// constructor or differs from it in the material only.
-    bool operator()(const Model& model, Eigen::VectorXd& x, const Eigen::VectorXd& gradient,
-                    double much = infinity);
+    /// Moves x to lower energy and `gradient`, which is x's, along with it; returns by how much the energy
+    /// fell, mJ. A spot is where the force is a good part of the largest one, or more than `much` (N).
+    /// `model` is the one given to the constructor or differs from it in the material only.
+    double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
+                      double much = infinity);
 
   private:
     std::vector<std::vector<int>> spots(const NodePattern& pattern, const Eigen::VectorXd& gradient,

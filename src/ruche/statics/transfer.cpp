@@ -50,6 +50,14 @@ Polar polar_decomposition(const Gradient& f) {
 
 /// The rotation nearest to a matrix (least squares), a mean of rotations when the matrix is their sum.
 Mat3 nearest_rotation(const Mat3& m) {
+    // Newton's iteration for the polar factor (Higham 1986); rotations that are summed are nearly the same.
+    Mat3 q = m / std::cbrt(m.determinant());
+    for (int step = 0; step < 8; ++step) {
+        const Mat3 next = 0.5 * (q + q.inverse().transpose());
+        const double change = (next - q).squaredNorm();
+        q = next;
+        if (change < 1e-16) return q;
+    }
     const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
     const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
     return svd.matrixU() * Vec3(1.0, 1.0, sign).asDiagonal() * svd.matrixV().transpose();
