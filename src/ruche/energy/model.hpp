@@ -146,11 +146,12 @@ class Model {
     };
     /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
     Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;
-    /// `nodes` and all that share an element with one of them, ascending.
-    std::vector<int> with_neighbours(std::span<const int> nodes) const;
     /// Energy of the elements that touch the patch, up to a constant; `sums` over the patch's unknowns, in
     /// their order. Costs in proportion to the patch, not to the sheet.
     double evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const;
+    /// Adds `factor` times the gradient of the elements that touch the patch to one over all unknowns.
+    void add_gradient(const Patch& patch, const Eigen::VectorXd& x, double factor,
+                      Eigen::VectorXd& gradient) const;
 
     EnergyTerms energy_terms(const Eigen::VectorXd& x) const;
     double energy(const Eigen::VectorXd& x) const { return energy_terms(x).total(); }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <type_traits>
 
 #include "ruche/energy/model_parts.hpp"
@@ -14,6 +15,9 @@ Model::Patch Model::patch(std::span<const int> nodes, std::span<const char> held
         }
     }
     std::sort(patch.unknowns_.begin(), patch.unknowns_.end());
+    thread_local std::vector<int> place;  // of an unknown in the patch; all -1 between calls
+    place.resize(std::max(place.size(), static_cast<std::size_t>(size())), -1);
+    for (int i = 0; i < patch.size(); ++i) place[patch.unknowns_[i]] = i;
     std::size_t term = 0;
     parts_->for_each_term([&](const auto& assembly) {
         constexpr int width = std::remove_cvref_t<decltype(assembly)>::unknowns_per_element;
@@ -23,28 +27,28 @@ Model::Patch Model::patch(std::span<const int> nodes, std::span<const char> held
         int* local = elements.local.data();
         for (const int element : elements.numbers) {
             assembly.unknowns_of(element, local);
-            for (int i = 0; i < width; ++i, ++local) {
-                const auto at = std::lower_bound(patch.unknowns_.begin(), patch.unknowns_.end(), *local);
-                const bool inside = at != patch.unknowns_.end() && *at == *local;
-                *local = inside ? static_cast<int>(at - patch.unknowns_.begin()) : -1;
-            }
+            for (int i = 0; i < width; ++i, ++local) *local = *local >= 0 ? place[*local] : -1;
         }
     });
+    for (const int unknown : patch.unknowns_) place[unknown] = -1;
     return patch;
 }
 
-std::vector<int> Model::with_neighbours(std::span<const int> nodes) const {
-    std::vector<int> found(nodes.begin(), nodes.end());
+void Model::add_gradient(const Patch& patch, const Eigen::VectorXd& x, double factor,
+                         Eigen::VectorXd& gradient) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    std::size_t term = 0;
     parts_->for_each_term([&](const auto& assembly) {
-        for (const int element : assembly.elements_at(nodes)) {
-            for (const int node : assembly.term().nodes(element)) {
-                if (node >= 0) found.push_back(node);
+        constexpr int width = std::remove_cvref_t<decltype(assembly)>::unknowns_per_element;
+        std::array<int, width> global;
+        for (const int element : patch.terms_[term++].numbers) {
+            const auto local = assembly.term().evaluate(element, unknowns, Order::gradient);
+            assembly.unknowns_of(element, global.data());
+            for (int i = 0; i < width; ++i) {
+                if (global[i] >= 0) gradient[global[i]] += factor * local.gradient[i];
             }
         }
     });
-    std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
 }
 
 double Model::evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const {

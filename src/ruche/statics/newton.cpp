@@ -62,7 +62,8 @@ double Newton::largest_turn() const {
     return wary_ ? std::min(wary_turn, options_.largest_turn) : options_.largest_turn;
 }
 
-/// Exchanges the model for one with a narrower linear extension when the shape leans on it.
+/// Exchanges the model for one with a narrower linear extension when the shape leans on it, and brings the
+/// spots that do into equilibrium with it.
 bool Newton::narrow_extension() {
     const double narrow = options_.narrow_log_extension;
     if (narrow == 0.0 || narrow >= model().input().options.log_extension ||
@@ -70,6 +71,7 @@ bool Newton::narrow_extension() {
         return false;
     }
     own_.emplace(model().with_log_extension(narrow));
+    relax_while(x_, 1e-9);
     return true;
 }
 
@@ -294,12 +296,10 @@ void Newton::iterate(Equilibrium& result) {
     for (;;) {
         const bool exact = loaded || rotation_ <= turning;
         const Order order = exact ? Order::hessian : Order::gauss_newton;
-        evaluate(order);
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
-        if ((rotation_ < settled || residual() <= tolerance) && narrow_extension()) {
-            relax_while(x_, 1e-9);
-            evaluate(order);
-        }
+        if (rotation_ < settled) narrow_extension();
+        evaluate(order);
+        if (residual() <= tolerance && narrow_extension()) evaluate(order);
         report();
         if (is_good(x_)) last_good_ = x_;
         result.residual = residual();

@@ -16,7 +16,7 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
-constexpr double good_enough = 1e-3;  // of the spot's first residual
+constexpr double good_enough = 0.1;  // of the spot's first residual: its surroundings will move too
 
 /// Newton's method on a spot: exact Hessian, shifted until it is positive definite, Armijo's rule. Returns
 /// by how much the energy fell.
@@ -118,17 +118,16 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pat
 
 double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
                                         double much) {
-    const std::vector<std::vector<int>> all = spots(model.pattern(), gradient, much);
-    std::vector<double> fell(all.size());
+    std::vector<Model::Patch> patches;
+    for (const std::vector<int>& nodes : spots(model.pattern(), gradient, much))
+        patches.push_back(model.patch(nodes, held_));
+    for (const Model::Patch& patch : patches) model.add_gradient(patch, x, -1.0, gradient);
+    std::vector<double> fell(patches.size());
     // No element touches two spots: they do not see each other move.
-    parallel_for(all.size(),
-                 [&](std::size_t i) { fell[i] = relax(model, model.patch(all[i], held_), x); });
-    DenseSums sums;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (fell[i] == 0.0) continue;
-        const Model::Patch around = model.patch(model.with_neighbours(all[i]), held_);
-        model.evaluate(around, x, Order::gradient, sums);
-        for (int k = 0; k < around.size(); ++k) gradient[around.unknowns()[k]] = sums.gradient[k];
+    parallel_for(patches.size(), [&](std::size_t i) { fell[i] = relax(model, patches[i], x); });
+    for (const Model::Patch& patch : patches) model.add_gradient(patch, x, 1.0, gradient);
+    for (Eigen::Index i = 0; i < gradient.size(); ++i) {
+        if (held_[i]) gradient[i] = 0.0;
     }
     return std::accumulate(fell.begin(), fell.end(), 0.0);
 }
