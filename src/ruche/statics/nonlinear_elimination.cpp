@@ -16,7 +16,7 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
-constexpr double good_enough = 0.1;  // of the spot's first residual: its surroundings will move too
+constexpr double good_enough = 0.01;  // of the spot's first residual: its surroundings will move too
 
 /// Newton's method on a spot: exact Hessian, shifted until it is positive definite, Armijo's rule. Returns
 /// by how much the energy fell.
