@@ -7,6 +7,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/energy/model.hpp"
 #include "ruche/material/cards.hpp"
+#include "ruche/material/consistent_modulus.hpp"
 #include "ruche/material/laminate.hpp"
 #include "ruche/output/metrics.hpp"
 #include "ruche/output/report.hpp"
@@ -230,7 +231,7 @@ void bind_model(py::module_& m) {
              "Further "
              "switches: edge_normals ('free' | 'averaged'), bending_normalisation ('plate' | 'as_printed'), "
              "laminate_thickness ('true' | 'as_printed'), shear_strain ('engineering' | 'tensor'), "
-             "log_extension.")
+             "fabric_ply ('linear' | 'same_law'), log_extension.")
         .def_property_readonly("size", &Model::size,
                                "Number of unknowns: three per vertex, then edge unknowns.")
         .def("initial", &Model::initial, "Flat as printed, without noise.")
@@ -363,6 +364,15 @@ PYBIND11_MODULE(ruche, m) {
     bind_material(m);
     bind_model(m);
     bind_solve(m);
+    m.def(
+        "consistent_fabric_modulus",
+        [](const Material& material, const py::object& prestretch) {
+            return consistent_fabric_modulus(material, prestretch_pair(prestretch));
+        },
+        "material"_a, "prestretch"_a = 1.7,
+        "The fabric_youngs_modulus (MPa) with which a linear fabric ply, held at the pre-stretch, pulls as "
+        "hard as "
+        "the fabric's law says, in the mean of both axes.");
     m.def(
         "laminate_energy_density",
         [](const Mat2& a, const Mat2& b, const std::vector<std::tuple<double, double, double, Mat2>>& plies,

@@ -6,18 +6,11 @@
 #include <numeric>
 
 #include "ruche/core/error.hpp"
+#include "ruche/energy/edge_roles.hpp"
 #include "ruche/energy/model_parts.hpp"
 
 namespace ruche {
 namespace {
-
-/// From the layout's axes on the frame to the relaxed fabric in fabric axes.
-Mat2 relaxation(const ModelInput& input) {
-    const double phi = input.fabric_axis_deg * std::numbers::pi / 180.0;
-    Mat2 to_fabric_axes;
-    to_fabric_axes << std::cos(phi), std::sin(phi), -std::sin(phi), std::cos(phi);
-    return Vec2(1.0 / input.prestretch[0], 1.0 / input.prestretch[1]).asDiagonal() * to_fabric_axes;
-}
 
 std::array<Vec2, 3> layout_corners(const TriangleMesh& mesh, int t) {
     const Triangle& tri = mesh.triangles[t];
@@ -129,57 +122,6 @@ std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& 
         layout_metric, fabric_metric);
 }
 
-/// Hinges and the edge sides of printed triangles, as the choice of edge normals has it.
-struct EdgeRoles {
-    std::vector<FabricBending::Hinge> hinges;
-    std::vector<std::array<LaminateTerm::EdgeSide, 3>> sides;  // per triangle
-    std::vector<std::array<int, 4>>
-        unknowns;  // per edge unknown: its edge's ends and the two opposite vertices
-};
-
-EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
-    using Kind = LaminateTerm::EdgeSide::Kind;
-    const TriangleMesh& mesh = input.mesh;
-    const Mat2 relax = relaxation(input);
-    const bool free = input.options.edge_normals == EdgeNormals::free;
-    const bool plate = input.options.bending_normalisation == BendingNormalisation::plate;
-    const double stiffness = input.material.fabric_bending_stiffness * (plate ? 1.0 : 6.0);
-    EdgeRoles roles;
-    roles.sides.resize(mesh.triangles.size());
-    for (const Edge& edge : edges.edges) {
-        const int t0 = edge.triangle[0];
-        const int t1 = edge.triangle[1];
-        const bool bare0 = input.print[t0].bare();
-        if (edge.on_boundary()) {
-            if (!bare0) roles.sides[t0][edge.local[0]].kind = free ? Kind::free_rim : Kind::clamped_rim;
-            continue;
-        }
-        const bool bare1 = input.print[t1].bare();
-        const int opposite[2] = {mesh.triangles[t0][edge.local[0]], mesh.triangles[t1][edge.local[1]]};
-        const Vec2 along = mesh.vertices[edge.vertex[1]] - mesh.vertices[edge.vertex[0]];
-        const double area = layout_area(mesh, t0) + layout_area(mesh, t1);
-        if (bare0 || bare1) {
-            const double rest_length2 = (relax * along).squaredNorm();
-            const double rest_area = area * relax.determinant();
-            roles.hinges.push_back({{edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]},
-                                    stiffness * rest_length2 / rest_area});
-            if (free) continue;  // rims of free edge normals keep their default, free_rim
-        }
-        const bool unknown = free && !bare0 && !bare1;
-        const int node = unknown ? mesh.vertex_count() + static_cast<int>(roles.unknowns.size()) : -1;
-        if (unknown) roles.unknowns.push_back({edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]});
-        for (int side = 0; side < 2; ++side) {
-            if (side == 0 ? bare0 : bare1) continue;
-            roles.sides[edge.triangle[side]][edge.local[side]] = {.kind = Kind::hinged,
-                                                                  .flap = opposite[1 - side],
-                                                                  .unknown = node,
-                                                                  .sign = side == 0 ? 1.0 : -1.0,
-                                                                  .mean_altitude = area / along.norm()};
-        }
-    }
-    return roles;
-}
-
 }  // namespace
 
 FabricLaw Model::Parts::law() const {
@@ -208,15 +150,23 @@ void Model::Parts::build_elastic_terms() {
         layout_edges << p[1] - p[0], p[2] - p[0];
         const Mat2 fabric_edges = relax * layout_edges;
         printed.push_back(t);
-        laminates.push_back({mesh.triangles[t], p, roles.sides[t],
+        laminates.push_back({mesh.triangles[t],
+                             p,
+                             roles.sides[t],
                              plies(input, input.print[t], layout_edges.transpose() * layout_edges,
-                                   fabric_edges.transpose() * fabric_edges)});
+                                   fabric_edges.transpose() * fabric_edges),
+                             {}});
+        if (input.options.fabric_ply == FabricPlyLaw::same_law) {
+            LaminateTerm::Element& element = laminates.back();
+            element.fabric = {element.plies[0].z0, element.plies[0].z1, p, relaxed};
+            element.plies.erase(element.plies.begin());
+        }
     }
     membrane =
         std::make_shared<TermAssembly<FabricMembrane>>(FabricMembrane(law(), m.fabric_thickness, membranes));
     bending = std::make_shared<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
-    laminate =
-        std::make_shared<TermAssembly<LaminateTerm>>(LaminateTerm(m.laminate_poissons_ratio, laminates));
+    laminate = std::make_shared<TermAssembly<LaminateTerm>>(
+        LaminateTerm(m.laminate_poissons_ratio, laminates, law()));
 }
 
 void Model::Parts::build_loads() {
@@ -298,6 +248,10 @@ Model Model::with_log_extension(double log_extension) const {
     auto membrane = std::make_shared<TermAssembly<FabricMembrane>>(*parts.membrane);
     membrane->exchange(parts.membrane->term().with_law(parts.law()));
     parts.membrane = std::move(membrane);
+    if (!parts.laminate->term().has_fabric_law()) return other;
+    auto laminate = std::make_shared<TermAssembly<LaminateTerm>>(*parts.laminate);
+    laminate->exchange(parts.laminate->term().with_law(parts.law()));
+    parts.laminate = std::move(laminate);
     return other;
 }
 

@@ -41,8 +41,8 @@ LaminateForm laminate_form(std::span<const Ply> plies, double poissons_ratio, co
 double laminate_energy_density(const Mat2& a, const Mat2& b, std::span<const Ply> plies,
                                double poissons_ratio);
 
-/// The plies of a print: reference surface at the fabric/plastic interface; on both sides, at mid-fabric.
-/// Thicknesses in mm; a side that is not printed has thickness 0.
+/// The plies of a print, the fabric first: reference surface at the fabric/plastic interface; on both sides,
+/// at mid-fabric. Thicknesses in mm; a side that is not printed has thickness 0.
 struct PrintedLaminate {
     double front = 0.0;
     double back = 0.0;

@@ -155,6 +155,8 @@ S laminate_energy(const Form<S>& a, const Form<S>& b, std::span<const Ply> plies
 struct LaminateElement {
     LaminateTerm::Element element;
     double poissons_ratio;
+    Material material = {};           ///< of the fabric ply when it has the fabric's own law
+    FabricLaw::Options options = {};  ///< of that law
 
     template <class S>
     S energy(std::span<const S> x) const {
@@ -172,6 +174,7 @@ struct LaminateElement {
         for (int i = 0; i < 3; ++i) {
             const LaminateTerm::EdgeSide& side = element.sides[i];
             free[i] = side.kind == LaminateTerm::EdgeSide::Kind::free_rim;
+            if (side.kind == LaminateTerm::EdgeSide::Kind::open_rim) c[i] = x[18 + i];
             if (side.kind != LaminateTerm::EdgeSide::Kind::hinged) continue;
             const Point<S> start = point((i + 1) % 3);
             const Point<S> end = point((i + 2) % 3);
@@ -182,12 +185,37 @@ struct LaminateElement {
         }
         const auto energy_of = [&](const std::array<S, 3>& k) -> S {
             const Form<S> b{2.0 * (k[0] + k[1]), 2.0 * k[0], 2.0 * (k[0] + k[2])};
-            return laminate_energy(a, b, element.plies, poissons_ratio);
+            S energy = laminate_energy(a, b, element.plies, poissons_ratio);
+            if (element.fabric) energy = energy + fabric_energy(a, b);
+            return energy;
         };
         return least_over_free(energy_of, c, free);
     }
 
   private:
+    /// Three-point Gauss quadrature through the fabric's thickness.
+    template <class S>
+    S fabric_energy(const Form<S>& a, const Form<S>& b) const {
+        const auto& p = element.fabric->relaxed;
+        Mat2 edges;
+        edges << p[1] - p[0], p[2] - p[0];
+        const Mat2 d = edges.inverse();
+        const double t = element.fabric->z1 - element.fabric->z0;
+        S energy(0.0);
+        for (const int q : {-1, 0, 1}) {
+            const double z = element.fabric->z0 + 0.5 * t * (1.0 + q * std::sqrt(3.0 / 5.0));
+            const Form<S> m{a.m11 - 2.0 * z * b.m11, a.m12 - 2.0 * z * b.m12, a.m22 - 2.0 * z * b.m22};
+            const auto entry = [&](int i, int j) -> S {
+                return d(0, i) * d(0, j) * m.m11 + (d(0, i) * d(1, j) + d(1, i) * d(0, j)) * m.m12 +
+                       d(1, i) * d(1, j) * m.m22;
+            };
+            energy =
+                energy + (q == 0 ? 4.0 / 9.0 : 5.0 / 18.0) * t * 0.5 * edges.determinant() *
+                             fabric_density<S>({entry(0, 0), entry(0, 1), entry(1, 1)}, material, options);
+        }
+        return energy;
+    }
+
     /// The least value of a quadratic function over the components of c that are free, from nothing but
     /// values of the function: with its values at -1, 0 and 1 the minimum of a parabola is known.
     template <class S, class F>

@@ -1,5 +1,6 @@
 #include "energy/oracle_model.hpp"
 
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -65,8 +66,11 @@ class Oracle {
         int next = 3 * vertices_;
         for (const Key& k : order_) {
             Sides& s = sides_[k];
-            const bool inner = s.of.size() == 2 && !bare(s.of[0].first) && !bare(s.of[1].first);
-            if (inner && input_.options.edge_normals == EdgeNormals::free) s.unknown = next++;
+            const auto printed =
+                std::count_if(s.of.begin(), s.of.end(), [&](const auto& side) { return !bare(side.first); });
+            const bool own_law = input_.options.fabric_ply == FabricPlyLaw::same_law;
+            const bool unknown = printed == 2 || (printed == 1 && own_law);
+            if (unknown && input_.options.edge_normals == EdgeNormals::free) s.unknown = next++;
         }
     }
 
@@ -91,11 +95,16 @@ class Oracle {
         }
     }
 
+    std::array<Vec2, 3> relaxed(int t) const {
+        return {relax_ * layout(t, 0), relax_ * layout(t, 1), relax_ * layout(t, 2)};
+    }
+    FabricLaw::Options law_options() const {
+        return {.log_extension = input_.options.log_extension,
+                .tensor_shear = input_.options.shear_strain == ShearStrain::tensor};
+    }
+
     void add_fabric(int t) {
-        const bool tensor = input_.options.shear_strain == ShearStrain::tensor;
-        const FabricElement element{{relax_ * layout(t, 0), relax_ * layout(t, 1), relax_ * layout(t, 2)},
-                                    input_.material,
-                                    {.log_extension = input_.options.log_extension, .tensor_shear = tensor}};
+        const FabricElement element{relaxed(t), input_.material, law_options()};
         add<9>(element, {vertex(t, 0), vertex(t, 1), vertex(t, 2)});
     }
 
@@ -126,11 +135,16 @@ class Oracle {
         // z = 0 at the interface; in mid-fabric when both sides are printed.
         double bottom = print.back > 0.0 ? 0.0 : -fabric;
         if (print.front > 0.0 && print.back > 0.0) bottom = -0.5 * fabric;
-        LaminateElement element{{}, m.laminate_poissons_ratio};
+        LaminateElement element{{}, m.laminate_poissons_ratio, m, law_options()};
         element.element.plies = {
             {bottom, bottom + fabric, m.fabric_youngs_modulus, fabric_metric},
             {bottom + fabric, bottom + fabric + scale * print.front, front_modulus, metric},
             {bottom - scale * print.back, bottom, back_modulus, metric}};
+        if (input_.options.fabric_ply == FabricPlyLaw::same_law) {
+            element.element.plies.erase(element.element.plies.begin());
+            element.element.fabric = {
+                bottom, bottom + fabric, {layout(t, 0), layout(t, 1), layout(t, 2)}, relaxed(t)};
+        }
         std::vector<int> nodes = {vertex(t, 0), vertex(t, 1), vertex(t, 2)};
         std::vector<int> unknowns;
         for (int i = 0; i < 3; ++i) {
@@ -156,8 +170,9 @@ class Oracle {
     }
 
     LaminateTerm::EdgeSide::Kind rim_kind() const {
-        return input_.options.edge_normals == EdgeNormals::free ? LaminateTerm::EdgeSide::Kind::free_rim
-                                                                : LaminateTerm::EdgeSide::Kind::clamped_rim;
+        using Kind = LaminateTerm::EdgeSide::Kind;
+        if (input_.options.edge_normals != EdgeNormals::free) return Kind::clamped_rim;
+        return input_.options.fabric_ply == FabricPlyLaw::same_law ? Kind::open_rim : Kind::free_rim;
     }
 
     void add_force(int v, const Vec3& force) {

@@ -47,9 +47,11 @@ struct Star {
 Star random_star(unsigned seed, double bend = 0.5);
 
 /// The printed triangle of a star: two-sided, with the given kinds of edges.
-enum class EdgeKind { free, averaged, free_rim, clamped_rim };
+enum class EdgeKind { free, averaged, free_rim, open_rim, clamped_rim };
 LaminateTerm::Element laminate_element(const Star& star, const std::array<EdgeKind, 3>& kinds,
                                        const PrintedLaminate& print);
+/// The same, its fabric ply with the fabric's own law.
+LaminateTerm::Element with_fabric_law(LaminateTerm::Element element);
 PrintedLaminate sample_print(bool front, bool back);
 
 /// The first N entries of a state as jets.
