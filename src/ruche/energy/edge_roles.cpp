@@ -15,11 +15,11 @@ class RoleFinder {
         roles_.sides.resize(input.mesh.triangles.size());
     }
 
-    void visit(const Edge& edge) {
+    void visit(const Edge& edge, bool may_hinge) {
         const bool inner = !edge.on_boundary();
         const bool printed0 = printed(edge, 0);
         const bool printed1 = inner && printed(edge, 1);
-        if (inner && !(printed0 && printed1)) add_hinge(edge);
+        if (inner && !(printed0 && printed1) && may_hinge) add_hinge(edge);
         if (printed0 && printed1) {
             add_common_normal(edge, free_);
         } else if (inner && !free_) {
@@ -52,13 +52,8 @@ class RoleFinder {
     }
 
     void add_hinge(const Edge& edge) {
-        const bool plate = input_.options.bending_normalisation == BendingNormalisation::plate;
-        const double stiffness = input_.material.fabric_bending_stiffness * (plate ? 1.0 : 6.0);
-        const Mat2 relax = relaxation(input_);
-        const double rest_length2 = (relax * along(edge)).squaredNorm();
-        const double rest_area = area(edge) * relax.determinant();
         roles_.hinges.push_back({{edge.vertex[0], edge.vertex[1], opposite(edge, 0), opposite(edge, 1)},
-                                 stiffness * rest_length2 / rest_area});
+                                 hinge_stiffness(input_, edge)});
     }
 
     /// The normal of the edge is one for both of its triangles; it may turn about the edge, or is their mean.
@@ -100,9 +95,34 @@ Mat2 relaxation(const ModelInput& input) {
     return Vec2(1.0 / input.prestretch[0], 1.0 / input.prestretch[1]).asDiagonal() * to_fabric_axes;
 }
 
-EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
+double hinge_stiffness(const ModelInput& input, const Edge& edge) {
+    const bool plate = input.options.bending_normalisation == BendingNormalisation::plate;
+    const double stiffness = input.material.fabric_bending_stiffness * (plate ? 1.0 : 6.0);
+    const Mat2 relax = relaxation(input);
+    const Vec2 along = input.mesh.vertices[edge.vertex[1]] - input.mesh.vertices[edge.vertex[0]];
+    const double area = layout_area(input.mesh, edge.triangle[0]) + layout_area(input.mesh, edge.triangle[1]);
+    return stiffness * (relax * along).squaredNorm() / (area * relax.determinant());
+}
+
+std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& layout_metric,
+                       const Mat2& fabric_metric) {
+    const Material& m = input.material;
+    // The paper's eq. 8, read literally, has the coefficients of layers half as thick.
+    const double scale = input.options.laminate_thickness == LaminateThickness::as_printed ? 0.5 : 1.0;
+    return printed_plies(
+        {.front = scale * print.front,
+         .back = scale * print.back,
+         .fabric = scale * m.fabric_thickness,
+         .front_modulus = print.front_modulus > 0.0 ? print.front_modulus : m.plastic_youngs_modulus,
+         .back_modulus = print.back_modulus > 0.0 ? print.back_modulus : m.plastic_youngs_modulus,
+         .fabric_modulus = m.fabric_youngs_modulus},
+        layout_metric, fabric_metric);
+}
+
+EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges, const std::vector<char>& no_hinge) {
     RoleFinder finder(input);
-    for (const Edge& edge : edges.edges) finder.visit(edge);
+    for (std::size_t e = 0; e < edges.edges.size(); ++e)
+        finder.visit(edges.edges[e], no_hinge.empty() || no_hinge[e] == 0);
     return std::move(finder).roles();
 }
 

@@ -9,6 +9,8 @@
 
 namespace ruche {
 
+/// What the terms of a model have in common: how its options read.
+
 /// Maps the layout on the frame to the relaxed fabric in fabric axes.
 Mat2 relaxation(const ModelInput& input);
 
@@ -21,6 +23,14 @@ struct EdgeRoles {
     /// triangle.
     std::vector<std::array<int, 4>> unknowns;
 };
-EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges);
+/// `no_hinge`: edges (by number) that have none; empty = none of them.
+EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges, const std::vector<char>& no_hinge);
+
+/// k_B |e|^2 / A_e of an inner edge, mJ (see FabricBending).
+double hinge_stiffness(const ModelInput& input, const Edge& edge);
+
+/// The plies of a print for a basis of the layout in which layout and relaxed fabric have these metrics.
+std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& layout_metric,
+                       const Mat2& fabric_metric);
 
 }  // namespace ruche

@@ -8,6 +8,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/energy/edge_roles.hpp"
 #include "ruche/energy/model_parts.hpp"
+#include "ruche/energy/rods.hpp"
 
 namespace ruche {
 namespace {
@@ -107,21 +108,6 @@ void check(const ModelInput& input) {
     }
 }
 
-std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& layout_metric,
-                       const Mat2& fabric_metric) {
-    const Material& m = input.material;
-    // The paper's eq. 8, read literally, has the coefficients of layers half as thick.
-    const double scale = input.options.laminate_thickness == LaminateThickness::as_printed ? 0.5 : 1.0;
-    return printed_plies(
-        {.front = scale * print.front,
-         .back = scale * print.back,
-         .fabric = scale * m.fabric_thickness,
-         .front_modulus = print.front_modulus > 0.0 ? print.front_modulus : m.plastic_youngs_modulus,
-         .back_modulus = print.back_modulus > 0.0 ? print.back_modulus : m.plastic_youngs_modulus,
-         .fabric_modulus = m.fabric_youngs_modulus},
-        layout_metric, fabric_metric);
-}
-
 }  // namespace
 
 FabricLaw Model::Parts::law() const {
@@ -134,8 +120,10 @@ void Model::Parts::build_elastic_terms() {
     const TriangleMesh& mesh = input.mesh;
     const Material& m = input.material;
     const Mat2 relax = relaxation(input);
-    const EdgeRoles roles = edge_roles(input, edges);
-    edge_unknowns = roles.unknowns;
+    RodElements rods = rod_elements(input, edges);
+    const EdgeRoles roles = edge_roles(input, edges, rods.on_rod);
+    // Rods stand beside no print, so the unknowns are the ones or the others.
+    edge_unknowns = input.rods.empty() ? roles.unknowns : rods.unknowns;
     std::vector<FabricMembrane::Element> membranes;
     std::vector<LaminateTerm::Element> laminates;
     for (const int t : spatial_order(mesh)) {
@@ -165,6 +153,8 @@ void Model::Parts::build_elastic_terms() {
     membrane =
         std::make_shared<TermAssembly<FabricMembrane>>(FabricMembrane(law(), m.fabric_thickness, membranes));
     bending = std::make_shared<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
+    rod_edges = std::make_shared<TermAssembly<RodEdge>>(RodEdge(std::move(rods.edges)));
+    rod_joints = std::make_shared<TermAssembly<RodJoint>>(RodJoint(std::move(rods.joints)));
     laminate = std::make_shared<TermAssembly<LaminateTerm>>(
         LaminateTerm(m.laminate_poissons_ratio, laminates, law()));
 }
@@ -186,7 +176,15 @@ void Model::Parts::build_loads() {
         areas.push_back({mesh.triangles[t], area});
     }
     const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
-    const Eigen::VectorXd mass = lumped_mass(mesh.vertex_count(), masses);
+    Eigen::VectorXd mass = lumped_mass(mesh.vertex_count(), masses);
+    for (const Rod& rod : input.rods) {
+        for (std::size_t k = 0; k + 1 < rod.vertices.size(); ++k) {
+            const int a = rod.vertices[k];
+            const int b = rod.vertices[k + 1];
+            const double volume = rod.width * rod.thickness * (mesh.vertices[b] - mesh.vertices[a]).norm();
+            for (const int v : {a, b}) mass[v] += 0.5 * m.plastic_density * tonne_per_mm3 * volume;
+        }
+    }
     dead_load = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertex_count()));
     for (int v = 0; v < mesh.vertex_count(); ++v) dead_load.segment<3>(3 * v) = mass[v] * gravity;
     for (const NodalForce& force : input.forces) dead_load.segment<3>(3 * force.vertex) += force.force;
@@ -211,8 +209,8 @@ void Model::Parts::build_contact(std::vector<ContactPair> pairs) {
 }
 
 void Model::Parts::build_pattern() {
-    const NodePattern::Cliques cliques[] = {membrane->cliques(), bending->cliques(), laminate->cliques(),
-                                            contact->cliques()};
+    const NodePattern::Cliques cliques[] = {membrane->cliques(),  bending->cliques(),    laminate->cliques(),
+                                            rod_edges->cliques(), rod_joints->cliques(), contact->cliques()};
     pattern = std::make_shared<NodePattern>(input.mesh.vertex_count(), static_cast<int>(edge_unknowns.size()),
                                             cliques);
     const auto prepare = [&]<class T>(std::shared_ptr<const TermAssembly<T>>& term) {
@@ -220,7 +218,8 @@ void Model::Parts::build_pattern() {
         prepared->prepare(pattern);
         term = std::move(prepared);
     };
-    prepare(membrane), prepare(bending), prepare(laminate), prepare(table), prepare(contact);
+    prepare(membrane), prepare(bending), prepare(laminate), prepare(rod_edges), prepare(rod_joints);
+    prepare(table), prepare(contact);
 }
 
 Model::Model(ModelInput input) : parts_(std::make_unique<Parts>()) {
@@ -282,6 +281,8 @@ EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums
     terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
     terms.fabric_bending = parts_->bending->add(unknowns, order, sums);
     terms.plastic = parts_->laminate->add(unknowns, order, sums);
+    terms.plastic += parts_->rod_edges->add(unknowns, order, sums);
+    terms.plastic += parts_->rod_joints->add(unknowns, order, sums);
     terms.gravity = parts_->table->add(unknowns, order, sums);
     terms.contact = parts_->contact->add(unknowns, order, sums);
     const Eigen::Index positions = parts_->dead_load.size();

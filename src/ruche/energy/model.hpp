@@ -19,6 +19,7 @@ enum class BendingNormalisation { plate, as_printed };
 enum class LaminateThickness { true_thickness, as_printed };
 enum class ShearStrain { engineering, tensor };
 enum class FabricPlyLaw { linear, same_law };
+enum class StripModel { shell, rods };
 
 /// Choices of the model that model.md names; the defaults are the ones that converge under refinement.
 struct ModelOptions {
@@ -27,6 +28,7 @@ struct ModelOptions {
     LaminateThickness laminate_thickness = LaminateThickness::true_thickness;
     ShearStrain shear_strain = ShearStrain::engineering;
     FabricPlyLaw fabric_ply = FabricPlyLaw::linear;  ///< of the fabric under plastic
+    StripModel strips = StripModel::shell;           ///< what printed strips are: print or rods of ModelInput
     double log_extension = 1e-3;    ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
     bool contact = false;           ///< parts of the sheet that come close repel each other
     double contact_distance = 0.5;  ///< mm, from which on
@@ -40,6 +42,17 @@ struct Support {
     int vertex = 0;
     std::array<bool, 3> fixed = {true, true, true};
     Vec3 at = Vec3::Zero();
+};
+
+/// A strip as an elastic rod without width, along edges inside the mesh (StripModel::rods; see the theory
+/// page).
+struct Rod {
+    std::vector<int>
+        vertices;            ///< along its line, neighbours share an edge; closed when the first is the last
+    double width = 0.0;      ///< mm, of its section
+    double thickness = 0.0;  ///< mm
+    Side side = Side::front;
+    double youngs_modulus = 0.0;  ///< MPa; 0 = the material's
 };
 
 /// A force that does not change with the shape, N.
@@ -58,7 +71,8 @@ struct Table {
 /// Everything that defines the energy of one printed sheet.
 struct ModelInput {
     TriangleMesh mesh;
-    std::vector<Print> print;  ///< per triangle; empty = bare fabric
+    std::vector<Print> print;  ///< per triangle; empty = bare fabric, as it must be with rods
+    std::vector<Rod> rods;
     Material material;
     std::array<double, 2> prestretch = {1.7, 1.7};
     double fabric_axis_deg = 0.0;
@@ -73,7 +87,7 @@ struct ModelInput {
 struct EnergyTerms {
     double fabric_membrane = 0.0;
     double fabric_bending = 0.0;
-    double plastic = 0.0;  ///< the whole laminate, its fabric ply included
+    double plastic = 0.0;  ///< the whole laminate, its fabric ply included; or rods
     double gravity = 0.0;  ///< with dead forces and the table
     double contact = 0.0;  ///< between parts of the sheet
     double total() const { return fabric_membrane + fabric_bending + plastic + gravity + contact; }
@@ -97,7 +111,8 @@ struct Health {
 /// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
 /// (mm), then, when edge normals are free, edge unknowns (mm; in the order of find_edges): one y per edge
 /// between two printed triangles and, when the fabric under plastic has the fabric's own law, one c per rim
-/// of a printed triangle. Const member functions may be called from several threads.
+/// of a printed triangle. Rods have one y per edge, rod by rod. Const member functions may be called from
+/// several threads.
 class Model {
   public:
     /// Throws InputError for an empty or inverted mesh, a print of the wrong size, or material values without
@@ -148,7 +163,7 @@ class Model {
             std::vector<int> local;
         };
         std::vector<int> unknowns_;
-        std::array<Elements, 5> terms_;
+        std::array<Elements, 7> terms_;
     };
     /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
     Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;

@@ -80,6 +80,11 @@ Health Model::health(const Eigen::VectorXd& x) const {
         health.max_edge_rotation_deg =
             std::max(health.max_edge_rotation_deg, laminate.max_normal_rotation(e, unknowns) * degrees);
     }
+    const RodEdge& rods = parts_->rod_edges->term();
+    for (int e = 0; e < rods.element_count(); ++e) {
+        health.max_edge_rotation_deg =
+            std::max(health.max_edge_rotation_deg, rods.max_fold(e, unknowns) * degrees);
+    }
     for (const ContactPair& pair : contacts()) {
         const double gap = distance(pair.kind, corners(pair, unknowns));
         if (gap >= pair.reach) continue;

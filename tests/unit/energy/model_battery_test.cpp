@@ -57,6 +57,9 @@ Relabelled relabel(const Model& model, unsigned seed) {
         input.print[k] = old.print[triangle[k]];
     }
     for (NodalForce& force : input.forces) force.vertex = vertex[force.vertex];
+    for (Rod& rod : input.rods) {
+        for (int& v : rod.vertices) v = vertex[v];
+    }
 
     const Model renumbered(input);
     std::map<std::pair<int, int>, int> place;  // by directed edge, as its first triangle sees it
@@ -133,6 +136,7 @@ TEST_CASE("model: the mirror image printed on the other side has the same energy
         CAPTURE(set_up.name);
         ModelInput other = set_up.input;
         for (Print& print : other.print) print = swapped(print);
+        for (Rod& rod : other.rods) rod.side = rod.side == Side::front ? Side::back : Side::front;
         // The table turns over with gravity.
         for (double& g : other.gravity) g = -g;
         for (NodalForce& force : other.forces) force.force.z() *= -1.0;

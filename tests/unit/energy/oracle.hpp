@@ -8,6 +8,8 @@
 #include "ruche/energy/fabric_bending.hpp"
 #include "ruche/energy/fabric_membrane.hpp"
 #include "ruche/energy/laminate_term.hpp"
+#include "ruche/energy/rod_edge.hpp"
+#include "ruche/energy/rod_joint.hpp"
 #include "ruche/material/material.hpp"
 
 /// The energies of the theory page, each as one formula on a scalar type S (double or Jet): the oracle that
@@ -234,6 +236,75 @@ struct LaminateElement {
         const S slope = 0.5 * (right - left);
         const S curvature = left + right - 2.0 * middle;
         return middle - 0.5 * (slope * slope / curvature);
+    }
+};
+
+/// A unit vector.
+template <class S>
+Point<S> normalised(const Point<S>& p) {
+    using std::sqrt;
+    const S length = sqrt(dot(p, p));
+    return {p[0] / length, p[1] / length, p[2] / length};
+}
+template <class S>
+Point<S> scaled(const S& k, const Point<S>& p) {
+    return {k * p[0], k * p[1], k * p[2]};
+}
+
+/// A rod's edge; unknowns: start, end, corners left and right, y.
+struct RodEdgeElement {
+    RodEdge::Element element;
+
+    template <class S>
+    S energy(std::span<const S> x) const {
+        using std::tan;
+        const auto point = [&](int v) -> Point<S> { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; };
+        const Point<S> d = point(1) - point(0);
+        const double length = element.length;
+        const S strain = 0.5 * ((1.0 / (length * length)) * dot(d, d) - 1.0);
+        const S half = 0.5 * dihedral(point(0), point(1), point(2), point(3));
+        const S phi = (1.0 / length) * x[12];
+        const S left = tan(0.5 * (half - phi));
+        const S right = tan(0.5 * (half + phi));
+        return 0.5 * element.stretching_stiffness * length * (strain * strain) +
+               4.0 * element.hinge_stiffness * (left * left + right * right);
+    }
+};
+
+/// Two edges of a rod; unknowns: three vertices, corners left and right of each edge, two y.
+struct RodJointElement {
+    RodJoint::Element element;
+
+    template <class S>
+    S energy(std::span<const S> x) const {
+        const std::array<std::array<Point<S>, 3>, 2> frames = {frame<S>(x, 0), frame<S>(x, 1)};
+        const auto d = [&](int i, int j) -> S { return dot(frames[0][i], frames[1][j]); };
+        const S divisor = d(0, 0) + d(1, 1) + d(2, 2) + 1.0;
+        const double l = 0.5 * (element.lengths[0] + element.lengths[1]);
+        S sum(0.0);
+        for (int k = 0; k < 3; ++k) {
+            const int i = (k + 1) % 3;
+            const int j = (k + 2) % 3;
+            const S off = 2.0 * (d(j, i) - d(i, j)) / divisor - element.rest[k];
+            sum = sum + 0.5 * element.stiffness[k] / l * (off * off);
+        }
+        return sum;
+    }
+
+  private:
+    template <class S>
+    std::array<Point<S>, 3> frame(std::span<const S> x, int e) const {
+        using std::cos;
+        using std::sin;
+        const auto point = [&](int v) -> Point<S> { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; };
+        const Point<S> d = point(e + 1) - point(e);
+        const Point<S> left = normalised(cross(d, point(3 + 2 * e) - point(e)));
+        const Point<S> right = normalised(cross(point(4 + 2 * e) - point(e), d));
+        const Point<S> t = normalised(d);
+        const Point<S> mean = normalised(left + right);
+        const S phi = (element.signs[e] / element.lengths[e]) * x[21 + e];
+        const Point<S> n = scaled(S(cos(phi)), mean) + scaled(S(sin(phi)), cross(t, mean));
+        return {t, cross(n, t), n};
     }
 };
 

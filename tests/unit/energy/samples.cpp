@@ -73,6 +73,31 @@ ModelInput patchwork() {
     return input;
 }
 
+ModelInput rod_patchwork() {
+    ModelInput input = patchwork();
+    input.print.clear();
+    input.options.strips = StripModel::rods;
+    const auto line = [&](const std::vector<Vec2>& points) {
+        std::vector<int> vertices;
+        for (const Vec2& p : points) {
+            const auto nearer = [&](const Vec2& a, const Vec2& b) { return (a - p).norm() < (b - p).norm(); };
+            vertices.push_back(static_cast<int>(std::ranges::min_element(input.mesh.vertices, nearer) -
+                                                input.mesh.vertices.begin()));
+        }
+        return vertices;
+    };
+    input.rods = {
+        {.vertices = line({{0, 2}, {1, 2}, {2, 2}, {3, 2}, {3, 3}, {4, 3}}), .width = 1.2, .thickness = 0.6},
+        {.vertices = line({{2, 4}, {2, 3}, {2, 2}, {2, 1}}),
+         .width = 0.8,
+         .thickness = 0.5,
+         .side = Side::back,
+         .youngs_modulus = 30.0},
+        {.vertices = line({{3, 2}, {2, 2}, {1, 2}}), .width = 1.0, .thickness = 0.4, .side = Side::back},
+        {.vertices = line({{3, 1}, {4, 1}}), .width = 1.0, .thickness = 0.4}};
+    return input;
+}
+
 std::vector<SetUp> set_ups() {
     std::vector<SetUp> result;
     const auto add = [&](const char* name, auto&& change, bool turns_freely = true) {
@@ -112,6 +137,13 @@ std::vector<SetUp> set_ups() {
             input.options.laminate_thickness = LaminateThickness::as_printed;
             input.options.shear_strain = ShearStrain::tensor;
         });
+    result.push_back({"rods", rod_patchwork()});
+    ModelInput oblique = rod_patchwork();
+    oblique.prestretch = {1.5, 1.3};
+    oblique.fabric_axis_deg = 30.0;
+    oblique.gravity = {0.0, 0.0, -9810.0};
+    oblique.options.bending_normalisation = BendingNormalisation::as_printed;
+    result.push_back({"rods, unequal pre-stretch, weight", oblique, false});
     add("anisotropic pre-stretch and axis angle", [](ModelInput& input) {
         input.prestretch = {1.5, 1.3};
         input.fabric_axis_deg = 30.0;

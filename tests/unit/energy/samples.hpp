@@ -29,6 +29,9 @@ Eigen::VectorXd rolled(const Model& model, const Roll& roll);
 /// A 5 x 4 grid on which every kind of edge occurs: bare-bare, bare-printed, printed-printed, boundary.
 ModelInput patchwork();
 
+/// The patchwork without print, with rods on the front and the back that cross, run side by side and bend.
+ModelInput rod_patchwork();
+
 /// Named variants of the patchwork: each option, print side, modulus, pre-stretch and load that the model
 /// has.
 struct SetUp {
