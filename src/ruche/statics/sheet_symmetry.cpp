@@ -63,7 +63,8 @@ bool loaded(const ModelInput& sheet) {
 }  // namespace
 
 std::vector<SheetSymmetry> find_symmetries(const ModelInput& sheet) {
-    if (loaded(sheet)) return {};
+    // Rods are not compared: no image of a state is looked for.
+    if (loaded(sheet) || !sheet.rods.empty()) return {};
     constexpr double degree = std::numbers::pi / 180.0;
     const LayoutFrame frame = layout_frame(sheet.mesh);
     const Isotropy isotropy = isotropy_of(sheet);
