@@ -2,7 +2,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <Eigen/LU>
 #include <cmath>
+#include <map>
 
 #include "release.hpp"
 #include "ruche/core/error.hpp"
@@ -17,6 +19,26 @@ namespace {
 
 Result released(const std::string& text) {
     return simulate(parse_scene("model.strips = \"rods\"\n" + text, "test.toml"));
+}
+
+/// Released over printed length around the middle, mean over the triangles between two radii of the layout.
+double transverse_stretch(const Result& result, double inner, double outer) {
+    double sum = 0.0;
+    double area = 0.0;
+    const TriangleMesh& mesh = result.layout.mesh;
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const auto& [a, b, c] = mesh.triangles[t];
+        const Vec2 centre = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+        if (centre.norm() < inner || centre.norm() > outer) continue;
+        Mat2 printed;
+        printed << mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a];
+        Eigen::Matrix<double, 3, 2> shape;
+        shape << result.shape[b] - result.shape[a], result.shape[c] - result.shape[a];
+        const Vec2 across = Vec2(-centre.y(), centre.x()).normalized();
+        sum += layout_area(mesh, t) * (shape * printed.inverse() * across).norm();
+        area += layout_area(mesh, t);
+    }
+    return sum / area;
 }
 
 /// Fabric that is hardly there, as far as it is not what the natural curvature is computed with.
@@ -100,6 +122,40 @@ TEST_CASE("rods: examples' patterns come to a certified rest, and halving the el
     const double coarse = curvature(1.0);
     CHECK(coarse > 0.02);
     CHECK(curvature(0.5) == doctest::Approx(coarse).epsilon(0.1));
+}
+
+TEST_CASE(
+    "rods: on the radial pattern rings contract across the strips alike, under the shell by what is "
+    "printed") {
+    // The torus of the examples; rings where 20, 20 and 40 strips of 1 mm are printed.
+    const auto rings = [](const std::string& strips) {
+        const Result result =
+            simulate(parse_scene("model.strips = \"" + strips +
+                                     "\"\npattern.generator = \"radial\"\nfabric.outline = \"fabric\"\n"
+                                     "plastic.thickness_mm = 0.7\nsolver = { seed = 1, noise_mm = 0.01 }\n",
+                                 "test.toml"));
+        CHECK(certain(result.equilibrium));
+        std::vector<double> stretches;
+        for (const Vec2& ring : {Vec2(13.0, 16.0), Vec2(17.5, 21.0), Vec2(23.5, 28.0), Vec2(28.0, 33.0)})
+            stretches.push_back(transverse_stretch(result, ring[0], ring[1]));
+        MESSAGE(strips << ": " << result.layout.mesh.triangle_count() << " triangles, "
+                       << result.equilibrium.iterations << " steps; transverse stretch " << stretches[0]
+                       << ", " << stretches[1] << ", " << stretches[2] << ", " << stretches[3]);
+        // The strips of each ring begin at its radius and end at 34 mm.
+        std::map<int, std::pair<double, int>> tube;
+        for (const StripMetrics& strip : measure_strips(result.layout, result.shape)) {
+            auto& [sum, count] = tube[static_cast<int>(std::lround(strip.printed_length))];
+            sum += strip.curvature;
+            ++count;
+        }
+        for (const auto& [length, of] : tube)
+            MESSAGE(of.second << " strips of " << length << " mm: curvature " << of.first / of.second
+                              << " /mm");
+        return stretches;
+    };
+    const auto shell = rings("shell");
+    const auto rods = rings("rods");
+    for (std::size_t k = 0; k < shell.size(); ++k) CHECK(rods[k] < shell[k]);
 }
 
 TEST_CASE("rods: the report says what they leave out, and a mesh file is refused") {
