@@ -9,8 +9,6 @@
 
 namespace ruche {
 
-/// What the terms of a model have in common: how its options read.
-
 /// Maps the layout on the frame to the relaxed fabric in fabric axes.
 Mat2 relaxation(const ModelInput& input);
 

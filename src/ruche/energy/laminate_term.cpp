@@ -87,11 +87,12 @@ struct LaminateTerm::Kinematics {
     Vec3 lengths;                       // L
     Vec3 altitude = Vec3::Zero();       // h_i
     Vec3 phi = Vec3::Zero();            // theta_i/2 +- xi_i
-    Vec3 c = Vec3::Zero();              // 0 where there is neither a second normal nor an unknown
+    Vec3 rim = Vec3::Zero();            // c_i of an open rim; 0 of a clamped one, any of a free one
 
-    FormVector deviation(const Vec3& layout_lengths) const {
+    FormVector strain(const Vec3& layout_lengths) const {
         FormVector strain;
-        strain << lengths - layout_lengths, c;
+        strain.head<3>() = lengths - layout_lengths;
+        for (int i = 0; i < 3; ++i) strain[3 + i] = hinged[i] ? altitude[i] * std::sin(phi[i]) : rim[i];
         return strain;
     }
 };
@@ -104,7 +105,7 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
         k.hinged[i] = e.nodes[3 + i] >= 0;
         const double y = e.nodes[6 + i] >= 0 ? x.edge_unknown(e.nodes[6 + i] - x.vertex_count) : 0.0;
         if (!k.hinged[i]) {
-            k.c[i] = y;
+            k.rim[i] = y;
             continue;
         }
         const Vec3& start = k.v[(i + 1) % 3];
@@ -113,7 +114,6 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
         k.flap[i] = dihedral_frame(end, start, x.position(e.nodes[3 + i]));
         k.altitude[i] = k.own[i].h;
         k.phi[i] = 0.5 * dihedral_angle(k.own[i], k.flap[i]) + e.y_to_xi[i] * y;
-        k.c[i] = k.altitude[i] * std::sin(k.phi[i]);
     }
     return k;
 }
@@ -124,7 +124,7 @@ double LaminateTerm::max_normal_rotation(int element, const Unknowns& x) const {
 
 std::array<Vec3, FabricPly::points> LaminateTerm::fabric_strains(int element, const Unknowns& x) const {
     const Prepared& e = elements_[element];
-    const FormVector strain = kinematics(e, x).deviation(e.layout_lengths);
+    const FormVector strain = kinematics(e, x).strain(e.layout_lengths);
     std::array<Vec3, FabricPly::points> strains;
     for (int q = 0; q < FabricPly::points; ++q) strains[q] = fabric_[element].green_strain(q, strain);
     return strains;
@@ -133,29 +133,34 @@ std::array<Vec3, FabricPly::points> LaminateTerm::fabric_strains(int element, co
 Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) const {
     const Prepared& e = elements_[element];
     const Kinematics k = kinematics(e, x);
-    const FormVector strain = k.deviation(e.layout_lengths);
+    const FormVector strain = k.strain(e.layout_lengths);
     const FormVector pull = e.quadratic * strain;
     Local<21> local;
     local.value = e.constant + strain.dot(e.linear + 0.5 * pull);
-    FabricPly::Response fabric;
-    if (has_fabric_law()) {
-        fabric = fabric_[element].evaluate(law_, strain, order);
-        local.value += fabric.energy;
-        fabric.tangent += e.quadratic;
+    if (!has_fabric_law()) {
+        if (order != Order::value) differentiate(e, k, {strain, e.linear + pull, e.quadratic}, order, local);
+        return local;
     }
-    if (order == Order::value || !std::isfinite(local.value)) return local;
+    const FabricPly::Response fabric = fabric_[element].evaluate(law_, strain, order);
+    local.value += fabric.energy;
+    if (order != Order::value && std::isfinite(local.value))
+        differentiate(e, k, {strain, e.linear + pull + fabric.stress, e.quadratic + fabric.tangent}, order,
+                      local);
+    return local;
+}
 
+void LaminateTerm::differentiate(const Prepared& e, const Kinematics& k, const StrainResponse& response,
+                                 Order order, Local<21>& local) {
     // Derivatives in the strain space (L, phi). h_i = 2A / sqrt(L_i), 16 A^2 = 2 (L0 L1 + L1 L2 + L2 L0) -
     // sum L^2, so with p_j = d(16 A^2)/dL_j: d ln h_i / dL_j = g_ij = p_j / (32 A^2) - delta_ij / (2 L_i).
-    const FormVector stress = e.linear + pull + fabric.stress;
-    const FormMatrix& stiffness = has_fabric_law() ? fabric.tangent : e.quadratic;
+    const FormVector& stress = response.stress;
     const Vec3 moment = stress.tail<3>();  // dW/dc
     const double sum = k.lengths.sum();
     const Vec3 p = Vec3::Constant(2.0 * sum) - 4.0 * k.lengths;
     // 16 A^2 from the cross product: from the lengths it cancels in thin triangles.
     const double area16 = 4.0 * (k.v[1] - k.v[0]).cross(k.v[2] - k.v[0]).squaredNorm();
     Mat3 log_slope = Mat3::Zero();  // g, row i: edge i
-    const Vec3& c = k.c;
+    const Vec3 c = response.strain.tail<3>();
     Vec3 c_phi = Vec3::Zero();  // dc_i/dphi_i; an open rim has its c_i in the place of phi_i
     for (int i = 0; i < 3; ++i) {
         if (!k.hinged[i]) {
@@ -187,12 +192,12 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
         local.gradient.segment<3>(9 + 3 * i) = slopes[3 + i] * flap_slope.col(i);
     }
     local.gradient.head<9>() = measures.lazyProduct(slopes);
-    if (!wants_hessian(order)) return local;
+    if (!wants_hessian(order)) return;
 
     FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
     jacobian.bottomLeftCorner<3, 3>() = c_lengths;
     jacobian.bottomRightCorner<3, 3>() = c_phi.asDiagonal();
-    FormMatrix in_measures = jacobian.transpose() * stiffness * jacobian;
+    FormMatrix in_measures = jacobian.transpose() * response.tangent * jacobian;
     if (order == Order::hessian) {
         // Second derivatives of c_i = h_i(L) sin(phi_i), weighted with the moments:
         // d2 h_i / h_i = g g^T + dg,  dg_jk = d2(16A^2)_jk / (32 A^2) - p_j p_k / (2 (16A^2)^2) + delta_ijk /
@@ -228,7 +233,7 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
                 (both * e.y_to_xi[i]) * flap_slope.col(j).transpose();
         }
     }
-    if (order != Order::hessian) return local;
+    if (order != Order::hessian) return;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);
     for (int i = 0; i < 3; ++i) {
@@ -236,7 +241,6 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
         k.own[i].add_second_derivative(0.5 * slopes[3 + i], own_slot[i], local.hessian);
         k.flap[i].add_second_derivative(0.5 * slopes[3 + i], flap_slot[i], local.hessian);
     }
-    return local;
 }
 
 }  // namespace ruche

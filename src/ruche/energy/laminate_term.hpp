@@ -82,6 +82,15 @@ class LaminateTerm {
     };
     struct Kinematics;
     Kinematics kinematics(const Prepared& element, const Unknowns& x) const;
+    /// First and second derivatives of the energy in the strain space (L - L_layout, c).
+    struct StrainResponse {
+        const FormVector& strain;
+        FormVector stress;
+        const FormMatrix& tangent;
+    };
+    /// Adds gradient and Hessian by the unknowns to `local`.
+    static void differentiate(const Prepared& element, const Kinematics& k, const StrainResponse& response,
+                              Order order, Local<21>& local);
 
     std::vector<Prepared> elements_;
     std::vector<FabricPly> fabric_;  // none, or one per element

@@ -14,8 +14,8 @@ std::span<const Field<ModelOptions>> fields<ModelOptions>() {
     static const Field<M> table[] = {
         {"strips", choice<&M::strips>(strips), "", -infinity, infinity,
          "What a printed strip is: shell is plastic and fabric as one layered sheet; rods are elastic rods "
-         "without width along the centre lines, as in Perez et al. 2017 and Jourdan et al. 2020: quick, but "
-         "blind to what plastic does to the fabric across the strip."},
+         "without width along the centre lines, the model of Perez et al. 2017 and Jourdan et al. 2020, for "
+         "comparison: they do nothing to the fabric across the strip."},
         {"edge_normals", choice<&M::edge_normals>(edge_normals), "", -infinity, infinity,
          "How the plastic's curvature is measured at an edge: free turns the edge's normal to where the "
          "energy is least and gives the same curvature on any mesh; averaged is the paper's."},
