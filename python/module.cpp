@@ -7,6 +7,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/energy/model.hpp"
 #include "ruche/material/cards.hpp"
+#include "ruche/material/consistent_modulus.hpp"
 #include "ruche/material/laminate.hpp"
 #include "ruche/output/metrics.hpp"
 #include "ruche/output/report.hpp"
@@ -115,6 +116,7 @@ std::unique_ptr<Model> make_model(const PythonMesh& mesh, const py::object& plas
                                   const Material& material, const py::object& prestretch,
                                   double fabric_axis_deg, const std::array<double, 3>& gravity,
                                   const py::object& pins, const py::object& plastic_modulus,
+                                  const std::vector<std::tuple<std::vector<int>, double, double>>& rods,
                                   const py::kwargs& switches) {
     ModelInput input;
     input.mesh = mesh.mesh;
@@ -135,6 +137,13 @@ std::unique_ptr<Model> make_model(const PythonMesh& mesh, const py::object& plas
     input.gravity = gravity;
     input.supports = supports(pins, mesh.mesh);
     set_fields(input.options, switches, "Model");
+    for (const auto& [vertices, width, thickness] : rods) {
+        input.options.strips = StripModel::rods;
+        input.rods.push_back({.vertices = vertices,
+                              .width = width,
+                              .thickness = std::abs(thickness),
+                              .side = thickness < 0.0 ? Side::back : Side::front});
+    }
     return std::make_unique<Model>(std::move(input));
 }
 
@@ -224,13 +233,17 @@ void bind_model(py::module_& m) {
         .def(py::init(&make_model), "mesh"_a, "plastic_mm"_a, "material"_a, "prestretch"_a = 1.7,
              "fabric_axis_deg"_a = 0.0, "gravity_mm_per_s2"_a = std::array<double, 3>{0, 0, 0},
              "pins"_a = py::none(), "plastic_modulus_mpa"_a = py::none(),
+             "rods"_a = std::vector<std::tuple<std::vector<int>, double, double>>(),
              "plastic_mm: thickness per triangle (m,), 0 bare, negative on the back, or (m, 2) front and "
              "back. pins: "
              "vertices held where they were printed, or {vertex: (x, y, z)} with None for a free coordinate. "
+             "rods, in place of plastic_mm: (vertices along edges, width in mm, thickness in mm, negative on "
+             "the "
+             "back) per strip. "
              "Further "
              "switches: edge_normals ('free' | 'averaged'), bending_normalisation ('plate' | 'as_printed'), "
              "laminate_thickness ('true' | 'as_printed'), shear_strain ('engineering' | 'tensor'), "
-             "log_extension.")
+             "fabric_ply ('linear' | 'same_law'), log_extension.")
         .def_property_readonly("size", &Model::size,
                                "Number of unknowns: three per vertex, then edge unknowns.")
         .def("initial", &Model::initial, "Flat as printed, without noise.")
@@ -363,6 +376,15 @@ PYBIND11_MODULE(ruche, m) {
     bind_material(m);
     bind_model(m);
     bind_solve(m);
+    m.def(
+        "consistent_fabric_modulus",
+        [](const Material& material, const py::object& prestretch) {
+            return consistent_fabric_modulus(material, prestretch_pair(prestretch));
+        },
+        "material"_a, "prestretch"_a = 1.7,
+        "The fabric_youngs_modulus (MPa) with which a linear fabric ply, held at the pre-stretch, pulls as "
+        "hard as "
+        "the fabric's law says, in the mean of both axes.");
     m.def(
         "laminate_energy_density",
         [](const Mat2& a, const Mat2& b, const std::vector<std::tuple<double, double, double, Mat2>>& plies,

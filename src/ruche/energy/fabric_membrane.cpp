@@ -1,6 +1,5 @@
 #include "ruche/energy/fabric_membrane.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -9,18 +8,6 @@ namespace {
 
 Corners corners(const std::array<int, 3>& vertices, const Unknowns& x) {
     return {x.position(vertices[0]), x.position(vertices[1]), x.position(vertices[2])};
-}
-
-/// The matrix with its negative eigenvalues set to zero.
-Mat3 positive_part(const Mat3& m) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(m);
-    if (eigen.eigenvalues()[0] >= 0.0) return m;
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-           eigen.eigenvectors().transpose();
-}
-
-bool positive_definite(const Mat3& m) {
-    return m(0, 0) > 0.0 && m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) > 0.0 && m.determinant() > 0.0;
 }
 
 }  // namespace
@@ -32,21 +19,12 @@ FabricMembrane::FabricMembrane(const FabricLaw& law, double thickness, const std
         const auto& p = element.relaxed;
         Mat2 edges;
         edges << p[1] - p[0], p[2] - p[0];
-        const Mat2 d = edges.inverse();
-        // C = d^T a d with a11 = L2, a22 = L1, a12 = (L1 + L2 - L0)/2; E = (C - I)/2 as (E11, E22, 2 E12).
-        const auto strain_of_metric = [&](double a11, double a12, double a22) {
-            Mat2 a;
-            a << a11, a12, a12, a22;
-            const Mat2 c = d.transpose() * a * d;
-            return Vec3(0.5 * c(0, 0), 0.5 * c(1, 1), c(0, 1));
-        };
         Prepared prepared;
         prepared.vertices = element.vertices;
         prepared.volume = thickness * 0.5 * edges.determinant();
         prepared.relaxed_lengths = {(p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm(),
                                     (p[1] - p[0]).squaredNorm()};
-        prepared.strain_of_lengths << strain_of_metric(0.0, -0.5, 0.0), strain_of_metric(0.0, 0.5, 1.0),
-            strain_of_metric(1.0, 0.5, 0.0);
+        prepared.strain_of_lengths = green_strain_of_lengths(p);
         elements_.push_back(prepared);
     }
 }
@@ -69,8 +47,7 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     local.gradient = lengths.transpose() * slopes;
     if (!wants_hessian(order)) return local;
 
-    const bool clamp = order != Order::hessian && !positive_definite(response.tangent);
-    const Mat3 tangent = clamp ? positive_part(response.tangent) : response.tangent;
+    const Mat3 tangent = order == Order::hessian ? response.tangent : response.semidefinite_tangent();
     const Mat3 in_lengths = e.volume * (e.strain_of_lengths.transpose() * tangent * e.strain_of_lengths);
     const Eigen::Matrix<double, 3, 9> weighted = in_lengths * lengths;
     for (int i = 0; i < 3; ++i)

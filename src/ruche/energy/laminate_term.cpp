@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <cassert>
 #include <cmath>
 
 namespace ruche {
@@ -42,7 +43,8 @@ void eliminate(int index, FormMatrix& quadratic, FormVector& linear, double& con
 
 }  // namespace
 
-LaminateTerm::LaminateTerm(double poissons_ratio, const std::vector<Element>& elements) {
+LaminateTerm::LaminateTerm(double poissons_ratio, const std::vector<Element>& elements, const FabricLaw& law)
+    : law_(law) {
     const FormMatrix to_forms = forms_of_strains();
     elements_.reserve(elements.size());
     for (const Element& element : elements) {
@@ -61,16 +63,20 @@ LaminateTerm::LaminateTerm(double poissons_ratio, const std::vector<Element>& el
         for (int i = 0; i < 3; ++i) {
             const EdgeSide& side = element.sides[i];
             const bool hinged = side.kind == EdgeSide::Kind::hinged;
+            const bool open = side.kind == EdgeSide::Kind::open_rim;
             prepared.nodes[i] = element.vertices[i];
             prepared.nodes[3 + i] = hinged ? side.flap : -1;
-            prepared.nodes[6 + i] = hinged ? side.unknown : -1;
-            prepared.y_to_xi[i] = prepared.nodes[6 + i] >= 0 ? side.sign / side.mean_altitude : 0.0;
+            prepared.nodes[6 + i] = hinged || open ? side.unknown : -1;
+            prepared.y_to_xi[i] = open ? 1.0 : 0.0;
+            if (hinged && side.unknown >= 0) prepared.y_to_xi[i] = side.sign / side.mean_altitude;
             if (side.kind == EdgeSide::Kind::free_rim) {
                 eliminate(3 + i, prepared.quadratic, prepared.linear, prepared.constant);
             }
         }
         elements_.push_back(prepared);
+        if (element.fabric) fabric_.emplace_back(*element.fabric);
     }
+    assert(fabric_.empty() || fabric_.size() == elements_.size());
 }
 
 struct LaminateTerm::Kinematics {
@@ -81,6 +87,14 @@ struct LaminateTerm::Kinematics {
     Vec3 lengths;                       // L
     Vec3 altitude = Vec3::Zero();       // h_i
     Vec3 phi = Vec3::Zero();            // theta_i/2 +- xi_i
+    Vec3 rim = Vec3::Zero();            // c_i of an open rim; 0 of a clamped one, any of a free one
+
+    FormVector strain(const Vec3& layout_lengths) const {
+        FormVector strain;
+        strain.head<3>() = lengths - layout_lengths;
+        for (int i = 0; i < 3; ++i) strain[3 + i] = hinged[i] ? altitude[i] * std::sin(phi[i]) : rim[i];
+        return strain;
+    }
 };
 
 LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unknowns& x) const {
@@ -89,15 +103,17 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
     k.lengths = squared_edge_lengths(k.v);
     for (int i = 0; i < 3; ++i) {
         k.hinged[i] = e.nodes[3 + i] >= 0;
-        if (!k.hinged[i]) continue;
+        const double y = e.nodes[6 + i] >= 0 ? x.edge_unknown(e.nodes[6 + i] - x.vertex_count) : 0.0;
+        if (!k.hinged[i]) {
+            k.rim[i] = y;
+            continue;
+        }
         const Vec3& start = k.v[(i + 1) % 3];
         const Vec3& end = k.v[(i + 2) % 3];
         k.own[i] = dihedral_frame(start, end, k.v[i]);
         k.flap[i] = dihedral_frame(end, start, x.position(e.nodes[3 + i]));
         k.altitude[i] = k.own[i].h;
-        const double xi =
-            e.nodes[6 + i] >= 0 ? e.y_to_xi[i] * x.edge_unknown(e.nodes[6 + i] - x.vertex_count) : 0.0;
-        k.phi[i] = 0.5 * dihedral_angle(k.own[i], k.flap[i]) + xi;
+        k.phi[i] = 0.5 * dihedral_angle(k.own[i], k.flap[i]) + e.y_to_xi[i] * y;
     }
     return k;
 }
@@ -106,34 +122,51 @@ double LaminateTerm::max_normal_rotation(int element, const Unknowns& x) const {
     return kinematics(elements_[element], x).phi.cwiseAbs().maxCoeff();
 }
 
+std::array<Vec3, FabricPly::points> LaminateTerm::fabric_strains(int element, const Unknowns& x) const {
+    const Prepared& e = elements_[element];
+    const FormVector strain = kinematics(e, x).strain(e.layout_lengths);
+    std::array<Vec3, FabricPly::points> strains;
+    for (int q = 0; q < FabricPly::points; ++q) strains[q] = fabric_[element].green_strain(q, strain);
+    return strains;
+}
+
 Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) const {
     const Prepared& e = elements_[element];
     const Kinematics k = kinematics(e, x);
-    Vec3 sine = Vec3::Zero();
-    FormVector strain;
-    strain.head<3>() = k.lengths - e.layout_lengths;
-    for (int i = 0; i < 3; ++i) {
-        sine[i] = std::sin(k.phi[i]);
-        strain[3 + i] = k.altitude[i] * sine[i];
-    }
+    const FormVector strain = k.strain(e.layout_lengths);
     const FormVector pull = e.quadratic * strain;
     Local<21> local;
     local.value = e.constant + strain.dot(e.linear + 0.5 * pull);
-    if (order == Order::value) return local;
+    if (!has_fabric_law()) {
+        if (order != Order::value) differentiate(e, k, {strain, e.linear + pull, e.quadratic}, order, local);
+        return local;
+    }
+    const FabricPly::Response fabric = fabric_[element].evaluate(law_, strain, order);
+    local.value += fabric.energy;
+    if (order != Order::value && std::isfinite(local.value))
+        differentiate(e, k, {strain, e.linear + pull + fabric.stress, e.quadratic + fabric.tangent}, order,
+                      local);
+    return local;
+}
 
+void LaminateTerm::differentiate(const Prepared& e, const Kinematics& k, const StrainResponse& response,
+                                 Order order, Local<21>& local) {
     // Derivatives in the strain space (L, phi). h_i = 2A / sqrt(L_i), 16 A^2 = 2 (L0 L1 + L1 L2 + L2 L0) -
     // sum L^2, so with p_j = d(16 A^2)/dL_j: d ln h_i / dL_j = g_ij = p_j / (32 A^2) - delta_ij / (2 L_i).
-    const FormVector stress = e.linear + pull;
+    const FormVector& stress = response.stress;
     const Vec3 moment = stress.tail<3>();  // dW/dc
     const double sum = k.lengths.sum();
     const Vec3 p = Vec3::Constant(2.0 * sum) - 4.0 * k.lengths;
     // 16 A^2 from the cross product: from the lengths it cancels in thin triangles.
     const double area16 = 4.0 * (k.v[1] - k.v[0]).cross(k.v[2] - k.v[0]).squaredNorm();
     Mat3 log_slope = Mat3::Zero();  // g, row i: edge i
-    Vec3 c = strain.tail<3>();
-    Vec3 c_phi = Vec3::Zero();  // dc_i/dphi_i
+    const Vec3 c = response.strain.tail<3>();
+    Vec3 c_phi = Vec3::Zero();  // dc_i/dphi_i; an open rim has its c_i in the place of phi_i
     for (int i = 0; i < 3; ++i) {
-        if (!k.hinged[i]) continue;
+        if (!k.hinged[i]) {
+            c_phi[i] = e.y_to_xi[i];
+            continue;
+        }
         log_slope.row(i) = (p / (2.0 * area16)).transpose();
         log_slope(i, i) -= 0.5 / k.lengths[i];
         c_phi[i] = k.altitude[i] * std::cos(k.phi[i]);
@@ -149,6 +182,7 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     measures.leftCols<3>() = edge_length_gradient(k.v).transpose();
     Mat3 flap_slope = Mat3::Zero();  // column i: dphi_i by flap i
     for (int i = 0; i < 3; ++i) {
+        local.gradient[18 + i] = slopes[3 + i] * e.y_to_xi[i];
         if (!k.hinged[i]) continue;
         for (int j = 0; j < 3; ++j)
             measures.block<3, 1>(3 * own_slot[i][j], 3 + i) += 0.5 * k.own[i].gradient(j);
@@ -156,15 +190,14 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
             measures.block<3, 1>(3 * flap_slot[i][j], 3 + i) += 0.5 * k.flap[i].gradient(j);
         flap_slope.col(i) = 0.5 * k.flap[i].gradient(2);
         local.gradient.segment<3>(9 + 3 * i) = slopes[3 + i] * flap_slope.col(i);
-        local.gradient[18 + i] = slopes[3 + i] * e.y_to_xi[i];
     }
     local.gradient.head<9>() = measures.lazyProduct(slopes);
-    if (!wants_hessian(order)) return local;
+    if (!wants_hessian(order)) return;
 
     FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
     jacobian.bottomLeftCorner<3, 3>() = c_lengths;
     jacobian.bottomRightCorner<3, 3>() = c_phi.asDiagonal();
-    FormMatrix in_measures = jacobian.transpose() * e.quadratic * jacobian;
+    FormMatrix in_measures = jacobian.transpose() * response.tangent * jacobian;
     if (order == Order::hessian) {
         // Second derivatives of c_i = h_i(L) sin(phi_i), weighted with the moments:
         // d2 h_i / h_i = g g^T + dg,  dg_jk = d2(16A^2)_jk / (32 A^2) - p_j p_k / (2 (16A^2)^2) + delta_ijk /
@@ -200,7 +233,7 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
                 (both * e.y_to_xi[i]) * flap_slope.col(j).transpose();
         }
     }
-    if (order != Order::hessian) return local;
+    if (order != Order::hessian) return;
 
     add_edge_length_curvature(slopes.head<3>(), local.hessian);
     for (int i = 0; i < 3; ++i) {
@@ -208,7 +241,6 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
         k.own[i].add_second_derivative(0.5 * slopes[3 + i], own_slot[i], local.hessian);
         k.flap[i].add_second_derivative(0.5 * slopes[3 + i], flap_slot[i], local.hessian);
     }
-    return local;
 }
 
 }  // namespace ruche

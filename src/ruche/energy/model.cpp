@@ -6,18 +6,12 @@
 #include <numeric>
 
 #include "ruche/core/error.hpp"
+#include "ruche/energy/edge_roles.hpp"
 #include "ruche/energy/model_parts.hpp"
+#include "ruche/energy/rods.hpp"
 
 namespace ruche {
 namespace {
-
-/// From the layout's axes on the frame to the relaxed fabric in fabric axes.
-Mat2 relaxation(const ModelInput& input) {
-    const double phi = input.fabric_axis_deg * std::numbers::pi / 180.0;
-    Mat2 to_fabric_axes;
-    to_fabric_axes << std::cos(phi), std::sin(phi), -std::sin(phi), std::cos(phi);
-    return Vec2(1.0 / input.prestretch[0], 1.0 / input.prestretch[1]).asDiagonal() * to_fabric_axes;
-}
 
 std::array<Vec2, 3> layout_corners(const TriangleMesh& mesh, int t) {
     const Triangle& tri = mesh.triangles[t];
@@ -114,72 +108,6 @@ void check(const ModelInput& input) {
     }
 }
 
-std::vector<Ply> plies(const ModelInput& input, const Print& print, const Mat2& layout_metric,
-                       const Mat2& fabric_metric) {
-    const Material& m = input.material;
-    // The paper's eq. 8, read literally, has the coefficients of layers half as thick.
-    const double scale = input.options.laminate_thickness == LaminateThickness::as_printed ? 0.5 : 1.0;
-    return printed_plies(
-        {.front = scale * print.front,
-         .back = scale * print.back,
-         .fabric = scale * m.fabric_thickness,
-         .front_modulus = print.front_modulus > 0.0 ? print.front_modulus : m.plastic_youngs_modulus,
-         .back_modulus = print.back_modulus > 0.0 ? print.back_modulus : m.plastic_youngs_modulus,
-         .fabric_modulus = m.fabric_youngs_modulus},
-        layout_metric, fabric_metric);
-}
-
-/// Hinges and the edge sides of printed triangles, as the choice of edge normals has it.
-struct EdgeRoles {
-    std::vector<FabricBending::Hinge> hinges;
-    std::vector<std::array<LaminateTerm::EdgeSide, 3>> sides;  // per triangle
-    std::vector<std::array<int, 4>>
-        unknowns;  // per edge unknown: its edge's ends and the two opposite vertices
-};
-
-EdgeRoles edge_roles(const ModelInput& input, const MeshEdges& edges) {
-    using Kind = LaminateTerm::EdgeSide::Kind;
-    const TriangleMesh& mesh = input.mesh;
-    const Mat2 relax = relaxation(input);
-    const bool free = input.options.edge_normals == EdgeNormals::free;
-    const bool plate = input.options.bending_normalisation == BendingNormalisation::plate;
-    const double stiffness = input.material.fabric_bending_stiffness * (plate ? 1.0 : 6.0);
-    EdgeRoles roles;
-    roles.sides.resize(mesh.triangles.size());
-    for (const Edge& edge : edges.edges) {
-        const int t0 = edge.triangle[0];
-        const int t1 = edge.triangle[1];
-        const bool bare0 = input.print[t0].bare();
-        if (edge.on_boundary()) {
-            if (!bare0) roles.sides[t0][edge.local[0]].kind = free ? Kind::free_rim : Kind::clamped_rim;
-            continue;
-        }
-        const bool bare1 = input.print[t1].bare();
-        const int opposite[2] = {mesh.triangles[t0][edge.local[0]], mesh.triangles[t1][edge.local[1]]};
-        const Vec2 along = mesh.vertices[edge.vertex[1]] - mesh.vertices[edge.vertex[0]];
-        const double area = layout_area(mesh, t0) + layout_area(mesh, t1);
-        if (bare0 || bare1) {
-            const double rest_length2 = (relax * along).squaredNorm();
-            const double rest_area = area * relax.determinant();
-            roles.hinges.push_back({{edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]},
-                                    stiffness * rest_length2 / rest_area});
-            if (free) continue;  // rims of free edge normals keep their default, free_rim
-        }
-        const bool unknown = free && !bare0 && !bare1;
-        const int node = unknown ? mesh.vertex_count() + static_cast<int>(roles.unknowns.size()) : -1;
-        if (unknown) roles.unknowns.push_back({edge.vertex[0], edge.vertex[1], opposite[0], opposite[1]});
-        for (int side = 0; side < 2; ++side) {
-            if (side == 0 ? bare0 : bare1) continue;
-            roles.sides[edge.triangle[side]][edge.local[side]] = {.kind = Kind::hinged,
-                                                                  .flap = opposite[1 - side],
-                                                                  .unknown = node,
-                                                                  .sign = side == 0 ? 1.0 : -1.0,
-                                                                  .mean_altitude = area / along.norm()};
-        }
-    }
-    return roles;
-}
-
 }  // namespace
 
 FabricLaw Model::Parts::law() const {
@@ -192,8 +120,10 @@ void Model::Parts::build_elastic_terms() {
     const TriangleMesh& mesh = input.mesh;
     const Material& m = input.material;
     const Mat2 relax = relaxation(input);
-    const EdgeRoles roles = edge_roles(input, edges);
-    edge_unknowns = roles.unknowns;
+    RodElements rods = rod_elements(input, edges);
+    const EdgeRoles roles = edge_roles(input, edges, rods.on_rod);
+    // Rods stand beside no print, so the unknowns are the ones or the others.
+    edge_unknowns = input.rods.empty() ? roles.unknowns : rods.unknowns;
     std::vector<FabricMembrane::Element> membranes;
     std::vector<LaminateTerm::Element> laminates;
     for (const int t : spatial_order(mesh)) {
@@ -208,15 +138,25 @@ void Model::Parts::build_elastic_terms() {
         layout_edges << p[1] - p[0], p[2] - p[0];
         const Mat2 fabric_edges = relax * layout_edges;
         printed.push_back(t);
-        laminates.push_back({mesh.triangles[t], p, roles.sides[t],
+        laminates.push_back({mesh.triangles[t],
+                             p,
+                             roles.sides[t],
                              plies(input, input.print[t], layout_edges.transpose() * layout_edges,
-                                   fabric_edges.transpose() * fabric_edges)});
+                                   fabric_edges.transpose() * fabric_edges),
+                             {}});
+        if (input.options.fabric_ply == FabricPlyLaw::same_law) {
+            LaminateTerm::Element& element = laminates.back();
+            element.fabric = {element.plies[0].z0, element.plies[0].z1, p, relaxed};
+            element.plies.erase(element.plies.begin());
+        }
     }
     membrane =
         std::make_shared<TermAssembly<FabricMembrane>>(FabricMembrane(law(), m.fabric_thickness, membranes));
     bending = std::make_shared<TermAssembly<FabricBending>>(FabricBending(roles.hinges));
-    laminate =
-        std::make_shared<TermAssembly<LaminateTerm>>(LaminateTerm(m.laminate_poissons_ratio, laminates));
+    rod_edges = std::make_shared<TermAssembly<RodEdge>>(RodEdge(std::move(rods.edges)));
+    rod_joints = std::make_shared<TermAssembly<RodJoint>>(RodJoint(std::move(rods.joints)));
+    laminate = std::make_shared<TermAssembly<LaminateTerm>>(
+        LaminateTerm(m.laminate_poissons_ratio, laminates, law()));
 }
 
 void Model::Parts::build_loads() {
@@ -236,7 +176,15 @@ void Model::Parts::build_loads() {
         areas.push_back({mesh.triangles[t], area});
     }
     const Vec3 gravity(input.gravity[0], input.gravity[1], input.gravity[2]);
-    const Eigen::VectorXd mass = lumped_mass(mesh.vertex_count(), masses);
+    Eigen::VectorXd mass = lumped_mass(mesh.vertex_count(), masses);
+    for (const Rod& rod : input.rods) {
+        for (std::size_t k = 0; k + 1 < rod.vertices.size(); ++k) {
+            const int a = rod.vertices[k];
+            const int b = rod.vertices[k + 1];
+            const double volume = rod.width * rod.thickness * (mesh.vertices[b] - mesh.vertices[a]).norm();
+            for (const int v : {a, b}) mass[v] += 0.5 * m.plastic_density * tonne_per_mm3 * volume;
+        }
+    }
     dead_load = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.vertex_count()));
     for (int v = 0; v < mesh.vertex_count(); ++v) dead_load.segment<3>(3 * v) = mass[v] * gravity;
     for (const NodalForce& force : input.forces) dead_load.segment<3>(3 * force.vertex) += force.force;
@@ -261,8 +209,8 @@ void Model::Parts::build_contact(std::vector<ContactPair> pairs) {
 }
 
 void Model::Parts::build_pattern() {
-    const NodePattern::Cliques cliques[] = {membrane->cliques(), bending->cliques(), laminate->cliques(),
-                                            contact->cliques()};
+    const NodePattern::Cliques cliques[] = {membrane->cliques(),  bending->cliques(),    laminate->cliques(),
+                                            rod_edges->cliques(), rod_joints->cliques(), contact->cliques()};
     pattern = std::make_shared<NodePattern>(input.mesh.vertex_count(), static_cast<int>(edge_unknowns.size()),
                                             cliques);
     const auto prepare = [&]<class T>(std::shared_ptr<const TermAssembly<T>>& term) {
@@ -270,7 +218,8 @@ void Model::Parts::build_pattern() {
         prepared->prepare(pattern);
         term = std::move(prepared);
     };
-    prepare(membrane), prepare(bending), prepare(laminate), prepare(table), prepare(contact);
+    prepare(membrane), prepare(bending), prepare(laminate), prepare(rod_edges), prepare(rod_joints);
+    prepare(table), prepare(contact);
 }
 
 Model::Model(ModelInput input) : parts_(std::make_unique<Parts>()) {
@@ -298,6 +247,10 @@ Model Model::with_log_extension(double log_extension) const {
     auto membrane = std::make_shared<TermAssembly<FabricMembrane>>(*parts.membrane);
     membrane->exchange(parts.membrane->term().with_law(parts.law()));
     parts.membrane = std::move(membrane);
+    if (!parts.laminate->term().has_fabric_law()) return other;
+    auto laminate = std::make_shared<TermAssembly<LaminateTerm>>(*parts.laminate);
+    laminate->exchange(parts.laminate->term().with_law(parts.law()));
+    parts.laminate = std::move(laminate);
     return other;
 }
 
@@ -328,6 +281,8 @@ EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums
     terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
     terms.fabric_bending = parts_->bending->add(unknowns, order, sums);
     terms.plastic = parts_->laminate->add(unknowns, order, sums);
+    terms.plastic += parts_->rod_edges->add(unknowns, order, sums);
+    terms.plastic += parts_->rod_joints->add(unknowns, order, sums);
     terms.gravity = parts_->table->add(unknowns, order, sums);
     terms.contact = parts_->contact->add(unknowns, order, sums);
     const Eigen::Index positions = parts_->dead_load.size();

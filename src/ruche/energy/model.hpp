@@ -18,6 +18,8 @@ enum class EdgeNormals { free, averaged };
 enum class BendingNormalisation { plate, as_printed };
 enum class LaminateThickness { true_thickness, as_printed };
 enum class ShearStrain { engineering, tensor };
+enum class FabricPlyLaw { linear, same_law };
+enum class StripModel { shell, rods };
 
 /// Choices of the model that model.md names; the defaults are the ones that converge under refinement.
 struct ModelOptions {
@@ -25,6 +27,8 @@ struct ModelOptions {
     BendingNormalisation bending_normalisation = BendingNormalisation::plate;
     LaminateThickness laminate_thickness = LaminateThickness::true_thickness;
     ShearStrain shear_strain = ShearStrain::engineering;
+    FabricPlyLaw fabric_ply = FabricPlyLaw::linear;  ///< of the fabric under plastic
+    StripModel strips = StripModel::shell;           ///< what printed strips are: print or rods of ModelInput
     double log_extension = 1e-3;    ///< delta: the stress goes on linearly beyond E_ii = gamma_i - delta
     bool contact = false;           ///< parts of the sheet that come close repel each other
     double contact_distance = 0.5;  ///< mm, from which on
@@ -38,6 +42,17 @@ struct Support {
     int vertex = 0;
     std::array<bool, 3> fixed = {true, true, true};
     Vec3 at = Vec3::Zero();
+};
+
+/// A strip as an elastic rod without width, along edges inside the mesh (StripModel::rods; see the theory
+/// page).
+struct Rod {
+    std::vector<int>
+        vertices;            ///< along its line, neighbours share an edge; closed when the first is the last
+    double width = 0.0;      ///< mm, of its section
+    double thickness = 0.0;  ///< mm
+    Side side = Side::front;
+    double youngs_modulus = 0.0;  ///< MPa; 0 = the material's
 };
 
 /// A force that does not change with the shape, N.
@@ -56,7 +71,8 @@ struct Table {
 /// Everything that defines the energy of one printed sheet.
 struct ModelInput {
     TriangleMesh mesh;
-    std::vector<Print> print;  ///< per triangle; empty = bare fabric
+    std::vector<Print> print;  ///< per triangle; empty = bare fabric, as it must be with rods
+    std::vector<Rod> rods;
     Material material;
     std::array<double, 2> prestretch = {1.7, 1.7};
     double fabric_axis_deg = 0.0;
@@ -71,7 +87,7 @@ struct ModelInput {
 struct EnergyTerms {
     double fabric_membrane = 0.0;
     double fabric_bending = 0.0;
-    double plastic = 0.0;  ///< the whole laminate, its fabric ply included
+    double plastic = 0.0;  ///< the whole laminate, its fabric ply included; or rods
     double gravity = 0.0;  ///< with dead forces and the table
     double contact = 0.0;  ///< between parts of the sheet
     double total() const { return fabric_membrane + fabric_bending + plastic + gravity + contact; }
@@ -79,9 +95,11 @@ struct EnergyTerms {
 
 /// What a careful reader of a result has to know about a state.
 struct Health {
-    double max_strain_margin = 0.0;  ///< max over bare fabric of E_ii - gamma_i (negative: inside the law)
-    int beyond_law = 0;              ///< bare elements in the law's linear extension
-    double min_area_ratio = 1.0;     ///< smallest area over rest area (relaxed fabric; layout where printed)
+    /// Largest E_ii - gamma_i of fabric that follows the law (negative: inside it): bare fabric and, with
+    /// fabric_ply = same_law, that under plastic too.
+    double max_strain_margin = 0.0;
+    int beyond_law = 0;           ///< elements with such fabric in the law's linear extension
+    double min_area_ratio = 1.0;  ///< smallest area over rest area (relaxed fabric; layout where printed)
     double max_dihedral_deg = 0.0;
     double max_edge_rotation_deg = 0.0;  ///< max |theta/2 +- xi|, must stay below 90
     int self_intersections = 0;          ///< pairs of triangles that pass through each other
@@ -91,8 +109,10 @@ struct Health {
 };
 
 /// The elastic energy of one printed sheet and its exact derivatives. Unknowns x: positions, three per vertex
-/// (mm), then one y per edge between two printed triangles when edge normals are free (mm; in the order of
-/// find_edges). Const member functions may be called from several threads.
+/// (mm), then, when edge normals are free, edge unknowns (mm; in the order of find_edges): one y per edge
+/// between two printed triangles and, when the fabric under plastic has the fabric's own law, one c per rim
+/// of a printed triangle. Rods have one y per edge, rod by rod. Const member functions may be called from
+/// several threads.
 class Model {
   public:
     /// Throws InputError for an empty or inverted mesh, a print of the wrong size, or material values without
@@ -112,7 +132,8 @@ class Model {
     const ModelInput& input() const;
     const MeshEdges& edges() const;
     const NodePattern& pattern() const;
-    /// Ends of the k-th edge unknown's edge and the two vertices opposite it.
+    /// Ends of the k-th edge unknown's edge and the two vertices opposite it; on a rim, twice the printed
+    /// triangle's.
     std::array<int, 4> vertices_of_edge_unknown(int k) const;
 
     /// The pairs of parts that contact acts between; none in a new model, whatever the options say (the
@@ -142,7 +163,7 @@ class Model {
             std::vector<int> local;
         };
         std::vector<int> unknowns_;
-        std::array<Elements, 5> terms_;
+        std::array<Elements, 7> terms_;
     };
     /// The unknowns of `nodes`, without those in `held` (one flag per unknown; empty = none).
     Patch patch(std::span<const int> nodes, std::span<const char> held = {}) const;
@@ -165,7 +186,7 @@ class Model {
     /// force, N.
     double typical_force(const Eigen::VectorXd& x) const;
 
-    /// How many bare elements are in the linear extension of the fabric's law.
+    /// How many elements have fabric in the linear extension of its law.
     int elements_beyond_law(const Eigen::VectorXd& x) const;
 
     /// Everything in Health that can be measured here: not self-intersections, nor the verdict `tangled`.

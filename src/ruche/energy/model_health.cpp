@@ -19,16 +19,32 @@ double Model::typical_force(const Eigen::VectorXd& x) const {
     return std::sqrt(sum / (3.0 * parts_->input.mesh.triangle_count()));
 }
 
-int Model::elements_beyond_law(const Eigen::VectorXd& x) const {
-    const Unknowns unknowns = parts_->unknowns(x);
-    const FabricMembrane& membrane = parts_->membrane->term();
-    int count = 0;
-    for (int e = 0; e < membrane.element_count(); ++e) {
-        const Vec3 strain = membrane.green_strain(e, unknowns);
-        const bool beyond =
-            strain[0] > membrane.law().strain_limit(0) || strain[1] > membrane.law().strain_limit(1);
-        count += beyond ? 1 : 0;
+namespace {
+
+/// Calls visit(strain) with the larger of E_ii - gamma_i of every element with fabric that follows its law.
+template <class Visit>
+void for_each_strain_margin(const FabricMembrane& membrane, const LaminateTerm& laminate,
+                            const Unknowns& unknowns, const Visit& visit) {
+    const auto margin = [](const FabricLaw& law, const Vec3& strain) {
+        return std::max(strain[0] - law.gamma(0), strain[1] - law.gamma(1));
+    };
+    for (int e = 0; e < membrane.element_count(); ++e)
+        visit(margin(membrane.law(), membrane.green_strain(e, unknowns)));
+    if (!laminate.has_fabric_law()) return;
+    for (int e = 0; e < laminate.element_count(); ++e) {
+        double largest = -infinity;
+        for (const Vec3& strain : laminate.fabric_strains(e, unknowns))
+            largest = std::max(largest, margin(laminate.law(), strain));
+        visit(largest);
     }
+}
+
+}  // namespace
+
+int Model::elements_beyond_law(const Eigen::VectorXd& x) const {
+    int count = 0;
+    const auto look = [&](double margin) { count += margin > -parts_->input.options.log_extension ? 1 : 0; };
+    for_each_strain_margin(parts_->membrane->term(), parts_->laminate->term(), parts_->unknowns(x), look);
     return count;
 }
 
@@ -38,13 +54,10 @@ Health Model::health(const Eigen::VectorXd& x) const {
     constexpr double degrees = 180.0 / std::numbers::pi;
     Health health;
     health.max_strain_margin = -infinity;
-    const FabricMembrane& membrane = parts_->membrane->term();
-    for (int e = 0; e < membrane.element_count(); ++e) {
-        const Vec3 strain = membrane.green_strain(e, unknowns);
-        for (int i = 0; i < 2; ++i)
-            health.max_strain_margin =
-                std::max(health.max_strain_margin, strain[i] - membrane.law().gamma(i));
-    }
+    const LaminateTerm& laminate = parts_->laminate->term();
+    for_each_strain_margin(parts_->membrane->term(), laminate, unknowns, [&](double margin) {
+        health.max_strain_margin = std::max(health.max_strain_margin, margin);
+    });
     health.beyond_law = elements_beyond_law(x);
     const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
     std::vector<Vec3> normals(mesh.triangles.size());
@@ -69,10 +82,14 @@ Health Model::health(const Eigen::VectorXd& x) const {
         sine = left.cross(right);
     }
     health.max_dihedral_deg = std::atan2(sine.norm(), sharpest) * degrees;
-    const LaminateTerm& laminate = parts_->laminate->term();
     for (int e = 0; e < laminate.element_count(); ++e) {
         health.max_edge_rotation_deg =
             std::max(health.max_edge_rotation_deg, laminate.max_normal_rotation(e, unknowns) * degrees);
+    }
+    const RodEdge& rods = parts_->rod_edges->term();
+    for (int e = 0; e < rods.element_count(); ++e) {
+        health.max_edge_rotation_deg =
+            std::max(health.max_edge_rotation_deg, rods.max_fold(e, unknowns) * degrees);
     }
     for (const ContactPair& pair : contacts()) {
         const double gap = distance(pair.kind, corners(pair, unknowns));

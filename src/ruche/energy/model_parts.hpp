@@ -10,6 +10,8 @@
 #include "ruche/energy/laminate_term.hpp"
 #include "ruche/energy/loads.hpp"
 #include "ruche/energy/model.hpp"
+#include "ruche/energy/rod_edge.hpp"
+#include "ruche/energy/rod_joint.hpp"
 
 namespace ruche {
 
@@ -25,6 +27,8 @@ struct Model::Parts {
     std::shared_ptr<const TermAssembly<FabricMembrane>> membrane;
     std::shared_ptr<const TermAssembly<FabricBending>> bending;
     std::shared_ptr<const TermAssembly<LaminateTerm>> laminate;
+    std::shared_ptr<const TermAssembly<RodEdge>> rod_edges;
+    std::shared_ptr<const TermAssembly<RodJoint>> rod_joints;
     std::shared_ptr<const TermAssembly<TableContact>> table;
     std::shared_ptr<const TermAssembly<ContactBarrier>> contact;
     Eigen::VectorXd dead_load;  // N, on positions: gravity and nodal forces
@@ -33,7 +37,8 @@ struct Model::Parts {
 
     template <class Visit>
     void for_each_term(const Visit& visit) const {
-        visit(*membrane), visit(*bending), visit(*laminate), visit(*table), visit(*contact);
+        visit(*membrane), visit(*bending), visit(*laminate), visit(*rod_edges), visit(*rod_joints);
+        visit(*table), visit(*contact);
     }
 
     FabricLaw law() const;

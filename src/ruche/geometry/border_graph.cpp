@@ -241,6 +241,13 @@ void append_loop(BorderGraph& graph, const Polyline& loop, int region) {
         graph.segments.push_back({{first + i, first + (i + 1) % count}, {region}});
 }
 
+void append_line(BorderGraph& graph, const Polyline& line, int number) {
+    const int first = static_cast<int>(graph.points.size());
+    for (const Vec2& p : line) graph.points.push_back(on_grid(p));
+    for (int i = 0; i + 1 < static_cast<int>(line.size()); ++i)
+        graph.segments.push_back({{first + i, first + i + 1}, {number}});
+}
+
 std::vector<std::vector<int>> segments_at_points(const BorderGraph& graph) {
     std::vector<std::vector<int>> at(graph.points.size());
     for (int i = 0; i < static_cast<int>(graph.segments.size()); ++i) {
@@ -309,7 +316,7 @@ double largest_gap(const Polyline& fine, const Polyline& coarse, bool closed) {
 
 }  // namespace
 
-BorderGraph border_graph(std::span<const Region> regions, double snap) {
+BorderGraph border_graph(std::span<const Region> regions, double snap, std::span<const Polyline> lines) {
     BorderGraph graph;
     for (int r = 0; r < static_cast<int>(regions.size()); ++r) {
         for (const Polygon& polygon : regions[r]) {
@@ -317,6 +324,8 @@ BorderGraph border_graph(std::span<const Region> regions, double snap) {
             for (const Polyline& hole : polygon.holes) append_loop(graph, hole, r);
         }
     }
+    for (int k = 0; k < static_cast<int>(lines.size()); ++k)
+        append_line(graph, lines[k], static_cast<int>(regions.size()) + k);
     snap_together(graph, std::max(snap, smallest_snap));
     return graph;
 }

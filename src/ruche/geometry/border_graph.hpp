@@ -20,10 +20,12 @@ struct BorderGraph {
     std::vector<Segment> segments;
 };
 
-/// Builds the graph. Points closer than `snap` (mm, at least two grid steps) become one, and a segment that
-/// passes closer to a point than that is led through it; nothing else moves. A graph's own regions give the
-/// same graph again. Throws InputError when the borders are so entangled that this does not come to an end.
-BorderGraph border_graph(std::span<const Region> regions, double snap);
+/// Builds the graph; open lines may be part of it, the k-th with the number of regions + k among `regions` of
+/// its segments (it bounds nothing). Points closer than `snap` (mm, at least two grid steps) become one, and
+/// a segment that passes closer to a point than that is led through it; nothing else moves. A graph's own
+/// regions give the same graph again. Throws InputError when the borders are so entangled that this does not
+/// come to an end.
+BorderGraph border_graph(std::span<const Region> regions, double snap, std::span<const Polyline> lines = {});
 
 /// Leaves out points of chains between junctions as `simplify` does, within the smallest of `tolerance`
 /// (mm, one per region) of the regions that the chain bounds, and snaps again. Returns for each region the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <array>
 #include <cmath>
 
@@ -18,6 +19,24 @@ using Corners = std::array<Vec3, 3>;
 /// the two corners and -2 I between them.
 inline Vec3 squared_edge_lengths(const Corners& v) {
     return {(v[2] - v[1]).squaredNorm(), (v[0] - v[2]).squaredNorm(), (v[1] - v[0]).squaredNorm()};
+}
+
+/// Green's strain of a triangle as (E11, E22, 2 E12) in the axes of its rest shape is M (L - L_rest), M
+/// constant: this is M for corners at rest in the plane, counter-clockwise.
+inline Mat3 green_strain_of_lengths(const std::array<Vec2, 3>& rest) {
+    Mat2 edges;
+    edges << rest[1] - rest[0], rest[2] - rest[0];
+    const Mat2 d = edges.inverse();
+    // C = d^T a d with a11 = L2, a22 = L1, a12 = (L1 + L2 - L0)/2; E = (C - I)/2.
+    const auto strain_of_metric = [&](double a11, double a12, double a22) -> Vec3 {
+        Mat2 a;
+        a << a11, a12, a12, a22;
+        const Mat2 c = d.transpose() * a * d;
+        return {0.5 * c(0, 0), 0.5 * c(1, 1), c(0, 1)};
+    };
+    Mat3 m;
+    m << strain_of_metric(0.0, -0.5, 0.0), strain_of_metric(0.0, 0.5, 1.0), strain_of_metric(1.0, 0.5, 0.0);
+    return m;
 }
 
 /// The dihedral angle theta across the edge a-b of the triangles (a, b, c) and (b, a, d), both

@@ -1,5 +1,7 @@
 #include "ruche/material/fabric_law.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +27,19 @@ LogTerm log_term(double beta, double gamma, double limit, double strain) {
     return term;
 }
 
+bool positive_definite(const Mat3& m) {
+    return m(0, 0) > 0.0 && m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0) > 0.0 && m.determinant() > 0.0;
+}
+
 }  // namespace
+
+Mat3 FabricResponse::semidefinite_tangent() const {
+    if (positive_definite(tangent)) return tangent;
+    const Eigen::SelfAdjointEigenSolver<Mat3> eigen(tangent);
+    if (eigen.eigenvalues()[0] >= 0.0) return tangent;
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+           eigen.eigenvectors().transpose();
+}
 
 FabricLaw::FabricLaw(const Material& m, const Options& options)
     : beta_{m.beta_1, m.beta_2},

@@ -10,6 +10,9 @@ struct FabricResponse {
     double energy = 0.0;
     Vec3 stress = Vec3::Zero();
     Mat3 tangent = Mat3::Zero();
+
+    /// The tangent with its negative eigenvalues set to zero (the log terms and C are convex, ln J is not).
+    Mat3 semidefinite_tangent() const;
 };
 
 /// The paper's law for the bare fabric (eqs 1-5), a function of Green's strain in fabric axes, Voigt notation

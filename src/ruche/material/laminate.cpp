@@ -1,5 +1,6 @@
 #include "ruche/material/laminate.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <cmath>
 
@@ -44,6 +45,13 @@ LaminateForm laminate_form(std::span<const Ply> plies, double nu, const Mat2& re
         form.constant += 0.5 * stretching * offset.dot(q_offset);
     }
     return form;
+}
+
+FormVector free_forms(std::span<const Ply> plies, double nu, const Mat2& reference_metric) {
+    const LaminateForm form = laminate_form(plies, nu, reference_metric);
+    FormVector forms = -form.quadratic.ldlt().solve(form.linear);
+    forms.head<3>() += components(reference_metric);
+    return forms;
 }
 
 double laminate_energy_density(const Mat2& a, const Mat2& b, std::span<const Ply> plies, double nu) {

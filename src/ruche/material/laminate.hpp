@@ -37,12 +37,16 @@ struct LaminateForm {
 };
 LaminateForm laminate_form(std::span<const Ply> plies, double poissons_ratio, const Mat2& reference_metric);
 
+/// The forms (a, b) of least energy when nothing holds them: those of a free narrow strip (theory page,
+/// closed forms).
+FormVector free_forms(std::span<const Ply> plies, double poissons_ratio, const Mat2& reference_metric);
+
 /// The same energy for one pair of forms, mJ/mm^2 of the layout when the basis is orthonormal there.
 double laminate_energy_density(const Mat2& a, const Mat2& b, std::span<const Ply> plies,
                                double poissons_ratio);
 
-/// The plies of a print: reference surface at the fabric/plastic interface; on both sides, at mid-fabric.
-/// Thicknesses in mm; a side that is not printed has thickness 0.
+/// The plies of a print, the fabric first: reference surface at the fabric/plastic interface; on both sides,
+/// at mid-fabric. Thicknesses in mm; a side that is not printed has thickness 0.
 struct PrintedLaminate {
     double front = 0.0;
     double back = 0.0;

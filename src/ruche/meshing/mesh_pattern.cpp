@@ -7,6 +7,7 @@
 #include "ruche/geometry/border_graph.hpp"
 #include "ruche/geometry/polyline.hpp"
 #include "ruche/meshing/branched_midlines.hpp"
+#include "ruche/meshing/centre_edges.hpp"
 #include "ruche/meshing/mesh_order.hpp"
 #include "ruche/meshing/point_locator.hpp"
 #include "ruche/meshing/print_mesh.hpp"
@@ -124,9 +125,10 @@ Triangulation refined(const MeshOptions& options, const SegmentGraph& graph, con
     }
 }
 
-// Which regions (0 = fabric, i + 1 = strip i) cover each piece of the plane: a border changes its own ones.
+// Which regions (0 = fabric, i + 1 = strip i) cover each piece of the plane: a border changes its own ones, a
+// line (numbered from `region_count` on) none.
 std::vector<std::vector<int>> regions_of_pieces(const Triangulation& triangulation, const BorderGraph& graph,
-                                                const std::vector<int>& origin) {
+                                                const std::vector<int>& origin, int region_count) {
     struct Door {
         int piece, segment;
     };
@@ -147,8 +149,9 @@ std::vector<std::vector<int>> regions_of_pieces(const Triangulation& triangulati
             if (known[door.piece]) continue;
             known[door.piece] = 1;
             const std::vector<int>& border = graph.segments[door.segment].regions;
-            std::set_symmetric_difference(regions[piece].begin(), regions[piece].end(), border.begin(),
-                                          border.end(), std::back_inserter(regions[door.piece]));
+            const auto lines = std::lower_bound(border.begin(), border.end(), region_count);
+            std::set_symmetric_difference(regions[piece].begin(), regions[piece].end(), border.begin(), lines,
+                                          std::back_inserter(regions[door.piece]));
             open.push_back(door.piece);
         }
     }
@@ -222,7 +225,12 @@ std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions
     std::vector<MeshedStrip> result;
     for (int s = 0; s < static_cast<int>(pattern.strips.size()); ++s) {
         const Strip& strip = pattern.strips[s];
-        MeshedStrip meshed{strip.id, strip.side, strip.thickness, {}};
+        MeshedStrip meshed{.id = strip.id,
+                           .side = strip.side,
+                           .thickness = strip.thickness,
+                           .centreline = {},
+                           .youngs_modulus = strip.youngs_modulus,
+                           .edge_lines = {}};
         const auto own = [&](int t) { return layout.strip[t].on(strip.side) == s; };
         double size = options.size_mm;
         for (const Polygon& polygon : strip.region)
@@ -248,15 +256,20 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     check(pattern, options);
     std::vector<Region> regions = {pattern.fabric};
     for (const Strip& strip : pattern.strips) regions.push_back(strip.region);
-    const BorderGraph graph = border_graph(regions, grid_snap);
     const SizeField sizes = size_field(pattern, options);
+    CentreEdges centre_edges;
+    if (options.centre_lines) {
+        for (const Strip& strip : pattern.strips) centre_edges.add(strip, centre_lines(strip), sizes);
+    }
+    const BorderGraph graph = border_graph(regions, grid_snap, centre_edges.lines());
     std::vector<int> origin;
     const SegmentGraph segments = divide(graph, sizes, origin);
     const double expected = sizes.expected_triangles(pattern.fabric);
     const Triangulation triangulation = refined(options, segments, sizes, expected);
     if (triangulation.mesh.triangles.empty()) throw InputError({}, "the fabric's outline encloses no area");
 
-    const std::vector<std::vector<int>> covered = regions_of_pieces(triangulation, graph, origin);
+    const std::vector<std::vector<int>> covered =
+        regions_of_pieces(triangulation, graph, origin, static_cast<int>(regions.size()));
     const std::vector<int> order = spatial_order(triangulation.mesh);
     PrintMesh result;
     result.mesh = reordered(triangulation.mesh, order);
@@ -266,6 +279,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
         result.print.push_back(print_of(result.strip.back(), pattern.strips));
     }
     result.strips = meshed_strips(pattern, options, result);
+    centre_edges.find(result);
     result.outline_layer = pattern.outline_layer;
     result.warnings = pattern.warnings;
     warn_about_size(result, expected);

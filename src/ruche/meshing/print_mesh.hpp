@@ -44,6 +44,13 @@ struct MeshedStrip {
     Side side = Side::front;
     double thickness = 0.0;
     std::vector<std::vector<MeshPoint>> centreline;  ///< evenly spaced, at most half an element apart
+    double youngs_modulus = 0.0;                     ///< MPa; 0 = the material's
+    /// Vertices along each centre line, neighbours joined by an edge; only with MeshOptions::centre_lines.
+    struct EdgeLine {
+        std::vector<int> vertices;
+        double width = 0.0;  ///< mm, of the strip there
+    };
+    std::vector<EdgeLine> edge_lines;
 };
 
 /// The conforming mesh of a pattern: every border of a strip is made of edges.
@@ -65,6 +72,7 @@ struct MeshOptions {
     double elements_across = 1.0;  ///< at least so many elements across a strip's width
     double fabric_size_mm = 2.0;   ///< edge length far from plastic
     double grading = 0.3;          ///< growth of edge length per length away from plastic
+    bool centre_lines = false;     ///< the strips' centre lines are made of edges too; no key of a scene
 };
 
 template <>

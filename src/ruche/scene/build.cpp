@@ -74,15 +74,25 @@ static void check_element_count(const Scene& scene, const Pattern& pattern) {
             "Choose larger elements, or check the size of the drawing.");
 }
 
+MeshOptions mesh_options(const Scene& scene) {
+    MeshOptions options = scene.mesh;
+    options.centre_lines = scene.model.strips == StripModel::rods;
+    return options;
+}
+
 PrintMesh scene_mesh(const Scene& scene) {
     if (!scene.pattern.mesh.empty()) {
+        if (scene.model.strips == StripModel::rods)
+            throw InputError(place_in(scene, "model.strips"),
+                             "is \"rods\", and the pattern is a mesh whose edges do not follow the strips",
+                             "Give the pattern as a drawing or a generator, or choose \"shell\".");
         const std::string& table = scene.pattern.thickness_table;
         return read_print_mesh(resolved_path(scene, scene.pattern.mesh),
                                table.empty() ? table : resolved_path(scene, table));
     }
     const Pattern pattern = scene_pattern(scene);
     check_element_count(scene, pattern);
-    return mesh_pattern(pattern, scene.mesh);
+    return mesh_pattern(pattern, mesh_options(scene));
 }
 
 static std::vector<int> vertices_in_box(const Selection& box, const TriangleMesh& mesh) {
@@ -201,6 +211,10 @@ static void check_weight(const Scene& scene, const ModelInput& model) {
     if (!model.table.present || scene.material.fabric_areal_density > 0.0) return;
     const MeshPieces pieces = find_pieces(model.mesh);
     std::vector<bool> heavy(static_cast<std::size_t>(pieces.count), false);
+    for (const Rod& rod : model.rods)
+        if (const int piece = pieces.of_vertex[static_cast<std::size_t>(rod.vertices.front())];
+            piece >= 0 && scene.material.plastic_density > 0.0)
+            heavy[static_cast<std::size_t>(piece)] = true;
     for (std::size_t t = 0; t < model.print.size(); ++t)
         if (const int piece = pieces.of_vertex[static_cast<std::size_t>(model.mesh.triangles[t][0])];
             piece >= 0 && !model.print[t].bare() && scene.material.plastic_density > 0.0)
@@ -214,10 +228,30 @@ static void check_weight(const Scene& scene, const ModelInput& model) {
         "Give material.fabric_areal_density_kg_per_m2, or hold the sheet by a [[support]] instead.");
 }
 
+std::vector<Print> laminated_print(const Scene& scene, const PrintMesh& layout) {
+    if (scene.model.strips == StripModel::shell) return layout.print;
+    return std::vector<Print>(layout.mesh.triangles.size());
+}
+
+static std::vector<Rod> model_rods(const Scene& scene, const PrintMesh& layout) {
+    std::vector<Rod> rods;
+    if (scene.model.strips == StripModel::shell) return rods;
+    for (const MeshedStrip& strip : layout.strips) {
+        for (const MeshedStrip::EdgeLine& line : strip.edge_lines)
+            rods.push_back({.vertices = line.vertices,
+                            .width = line.width,
+                            .thickness = strip.thickness,
+                            .side = strip.side,
+                            .youngs_modulus = strip.youngs_modulus});
+    }
+    return rods;
+}
+
 ModelInput scene_model(const Scene& scene, const PrintMesh& layout) {
     constexpr double table_stiffness = 1.0;  // N/mm^3: a printed sheet sinks in by micrometres
     ModelInput model{.mesh = layout.mesh,
-                     .print = layout.print,
+                     .print = laminated_print(scene, layout),
+                     .rods = model_rods(scene, layout),
                      .material = scene.material,
                      .prestretch = scene.fabric.prestretch,
                      .fabric_axis_deg = scene.fabric.axis_deg,

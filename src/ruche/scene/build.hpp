@@ -13,8 +13,14 @@ namespace ruche {
 /// The printed pattern of a drawing or a generator (not of a mesh file).
 Pattern scene_pattern(const Scene& scene);
 
+/// How the scene's pattern is to be meshed: rods need edges along the strips.
+MeshOptions mesh_options(const Scene& scene);
+
 /// The layout mesh: made from the pattern, or read from the mesh file. Carries the pattern's warnings.
 PrintMesh scene_mesh(const Scene& scene);
+
+/// What of the layout's print the energy has as laminates: all of it, or nothing when strips are rods.
+std::vector<Print> laminated_print(const Scene& scene, const PrintMesh& layout);
 
 /// Mesh, material, loads and supports. Throws when a support or force takes hold of no vertex, two supports
 /// take a vertex to different places, or a piece of the sheet would fall.

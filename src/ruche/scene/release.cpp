@@ -37,7 +37,7 @@ std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& fine
         !scene.pattern.mesh.empty())
         return layouts;
     const Pattern pattern = scene_pattern(scene);
-    MeshOptions options = scene.mesh;
+    MeshOptions options = mesh_options(scene);
     int count = finest.mesh.triangle_count();
     while (count > small) {
         options.size_mm *= 2.0;
@@ -101,7 +101,8 @@ Equilibrium ReleasePath::from(Equilibrium start, const Control& control) const {
 /// To finer and finer meshes.
 Equilibrium ReleasePath::climb(Equilibrium start, const Control& control) const {
     const auto solve_on = [&](const Model& model, const SolveOptions& options, const PrintMesh& below) {
-        return after(start, solve(model, options, control, LayoutShape{below.mesh, below.print, start.x}));
+        return after(start, solve(model, options, control,
+                                  LayoutShape{below.mesh, laminated_print(scene_, below), start.x}));
     };
     for (std::size_t level = coarser_.size() - 1; level > 0; --level)
         start = solve_on(Model(scene_model(free_scene_, coarser_[level - 1])), as_a_start(scene_),

@@ -29,7 +29,7 @@ std::optional<PrintMesh> quick_layout(const Result& result) {
         return result.layout;
     }
     const double coarser = std::sqrt(static_cast<double>(count) / aimed_at);
-    MeshOptions options = scene.mesh;
+    MeshOptions options = mesh_options(scene);
     options.size_mm *= coarser;
     options.fabric_size_mm *= coarser;
     options.elements_across = std::max(1.0, options.elements_across / coarser);
@@ -74,7 +74,8 @@ Eigen::VectorXd released(const Result& result, const Model& model, const Control
     const TriangleMesh& fine = result.layout.mesh;
     if (fine.vertex_count() == model.vertex_count() && result.equilibrium.x.size() == model.size())
         return result.equilibrium.x;
-    return solve(model, options, control, LayoutShape{fine, result.layout.print, result.equilibrium.x}).x;
+    const std::vector<Print> print = laminated_print(result.scene, result.layout);
+    return solve(model, options, control, LayoutShape{fine, print, result.equilibrium.x}).x;
 }
 
 ReleaseFilm follow(const Result& result, PrintMesh layout, const Control& control) {

@@ -50,6 +50,11 @@ std::vector<std::string> assumptions(const Scene& scene, const PrintMesh& layout
         add(scene.plastic, "plastic", "thickness_mm");
         add(scene.plastic, "plastic", "side");
     }
+    if (scene.model.strips == StripModel::rods)
+        texts.emplace_back(
+            "model.strips = rods: strips are elastic rods without width; what plastic does to the fabric "
+            "across a "
+            "strip is left out, and the fabric under plastic pulls as hard as the fabric beside it");
     for (std::string& text : assumed_values(scene.material, scene.material_sources))
         texts.push_back(std::move(text));
     return texts;

@@ -119,6 +119,11 @@ std::uint64_t fingerprint(const ModelInput& model) {
     append_mesh(out, model.mesh);
     for (const Print& print : model.print)
         out.numbers(std::array{print.front, print.back, print.front_modulus, print.back_modulus});
+    for (const Rod& rod : model.rods) {
+        for (const int vertex : rod.vertices) out.number(vertex);
+        out.numbers(std::array{rod.width, rod.thickness, rod.youngs_modulus});
+        out.number(static_cast<int>(rod.side));
+    }
     append_fields(out, model.material);
     append_fields(out, model.options);
     out.numbers(model.prestretch);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
+#include <utility>
 
 #include "ruche/core/parallel.hpp"
 
@@ -60,6 +62,24 @@ Edges edge_change(const Edges& d, const ElementStep& step, double t) {
     return rotation.toRotationMatrix() * strained - d;
 }
 
+/// Triangles that are printed, or beside a rod.
+std::vector<bool> held_by_plastic(const ModelInput& input) {
+    std::set<std::pair<int, int>> rod_edges;
+    for (const Rod& rod : input.rods) {
+        for (std::size_t k = 0; k + 1 < rod.vertices.size(); ++k)
+            rod_edges.insert(std::minmax(rod.vertices[k], rod.vertices[k + 1]));
+    }
+    std::vector<bool> held;
+    for (std::size_t t = 0; t < input.mesh.triangles.size(); ++t) {
+        const Triangle& v = input.mesh.triangles[t];
+        const bool beside = rod_edges.contains(std::minmax(v[0], v[1])) ||
+                            rod_edges.contains(std::minmax(v[1], v[2])) ||
+                            rod_edges.contains(std::minmax(v[2], v[0]));
+        held.push_back(!input.print[t].bare() || beside);
+    }
+    return held;
+}
+
 }  // namespace
 
 Retraction::Retraction(const Model& model, std::vector<int> vertex_order)
@@ -68,12 +88,13 @@ Retraction::Retraction(const Model& model, std::vector<int> vertex_order)
     const TriangleMesh& mesh = input.mesh;
     pieces_ = find_pieces(mesh);
     supports_ = input.supports;
+    const std::vector<bool> stiff = held_by_plastic(input);
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Triangle& v = mesh.triangles[t];
         Element element;
         element.vertices = v;
         element.area = layout_area(mesh, t);
-        element.weight = element.area * (input.print[t].bare() ? 1.0 : 30.0);
+        element.weight = element.area * (stiff[t] ? 30.0 : 1.0);
         Mat2 e;
         e << mesh.vertices[v[1]] - mesh.vertices[v[0]], mesh.vertices[v[2]] - mesh.vertices[v[0]];
         element.inverse_edges = e.inverse();

@@ -26,7 +26,8 @@ Isotropy isotropy_of(const ModelInput& sheet) {
     if (sheet.prestretch[0] != sheet.prestretch[1]) return Isotropy::none;
     const bool printed_all_over =
         std::ranges::none_of(sheet.print, [](const Print& print) { return print.bare(); });
-    if (printed_all_over && !sheet.print.empty()) return Isotropy::full;
+    const bool isotropic_laminate = sheet.options.fabric_ply == FabricPlyLaw::linear;
+    if (printed_all_over && !sheet.print.empty() && isotropic_laminate) return Isotropy::full;
     const bool alike = m.alpha_1 == m.alpha_2 && m.beta_1 == m.beta_2 && m.gamma_1 == m.gamma_2;
     return alike ? Isotropy::axes_alike : Isotropy::none;
 }
@@ -62,7 +63,8 @@ bool loaded(const ModelInput& sheet) {
 }  // namespace
 
 std::vector<SheetSymmetry> find_symmetries(const ModelInput& sheet) {
-    if (loaded(sheet)) return {};
+    // Rods are not compared: no image of a state is looked for.
+    if (loaded(sheet) || !sheet.rods.empty()) return {};
     constexpr double degree = std::numbers::pi / 180.0;
     const LayoutFrame frame = layout_frame(sheet.mesh);
     const Isotropy isotropy = isotropy_of(sheet);

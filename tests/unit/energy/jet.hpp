@@ -109,6 +109,10 @@ Jet<N> sin(const Jet<N>& u) {
     return chain(u, std::sin(u.value), std::cos(u.value), -std::sin(u.value));
 }
 template <int N>
+Jet<N> cos(const Jet<N>& u) {
+    return chain(u, std::cos(u.value), -std::sin(u.value), -std::cos(u.value));
+}
+template <int N>
 Jet<N> tan(const Jet<N>& u) {
     const double t = std::tan(u.value);
     return chain(u, t, 1.0 + t * t, 2.0 * t * (1.0 + t * t));

@@ -57,28 +57,25 @@ Relabelled relabel(const Model& model, unsigned seed) {
         input.print[k] = old.print[triangle[k]];
     }
     for (NodalForce& force : input.forces) force.vertex = vertex[force.vertex];
+    for (Rod& rod : input.rods) {
+        for (int& v : rod.vertices) v = vertex[v];
+    }
 
     const Model renumbered(input);
-    const auto inner = [](const Model& m) {
-        std::vector<Edge> edges;
-        for (const Edge& e : m.edges().edges) {
-            if (m.size() == 3 * m.vertex_count() || e.on_boundary()) continue;
-            if (!m.input().print[e.triangle[0]].bare() && !m.input().print[e.triangle[1]].bare()) {
-                edges.push_back(e);
-            }
-        }
-        return edges;
-    };
     std::map<std::pair<int, int>, int> place;  // by directed edge, as its first triangle sees it
-    const std::vector<Edge> edges = inner(renumbered);
-    for (int k = 0; k < int(edges.size()); ++k) place[{edges[k].vertex[0], edges[k].vertex[1]}] = k;
-    int at = 3 * model.vertex_count();
-    for (const Edge& e : inner(model)) {
-        const int a = vertex[e.vertex[0]];
-        const int b = vertex[e.vertex[1]];
+    for (int at = 3 * model.vertex_count(); at < renumbered.size(); ++at) {
+        const auto around = renumbered.vertices_of_edge_unknown(at - 3 * model.vertex_count());
+        place[{around[0], around[1]}] = at;
+    }
+    for (int at = 3 * model.vertex_count(); at < model.size(); ++at) {
+        const auto around = model.vertices_of_edge_unknown(at - 3 * model.vertex_count());
+        const int a = vertex[around[0]];
+        const int b = vertex[around[1]];
         const bool same = place.contains({a, b});
-        result.sign[at] = same ? 1.0 : -1.0;
-        result.to[at++] = 3 * model.vertex_count() + (same ? place.at({a, b}) : place.at({b, a}));
+        // What an open rim has for its unknown does not turn about the edge.
+        const bool rim = around[2] == around[3];
+        result.sign[at] = same || rim ? 1.0 : -1.0;
+        result.to[at] = same ? place.at({a, b}) : place.at({b, a});
     }
     return result;
 }
@@ -139,6 +136,7 @@ TEST_CASE("model: the mirror image printed on the other side has the same energy
         CAPTURE(set_up.name);
         ModelInput other = set_up.input;
         for (Print& print : other.print) print = swapped(print);
+        for (Rod& rod : other.rods) rod.side = rod.side == Side::front ? Side::back : Side::front;
         // The table turns over with gravity.
         for (double& g : other.gravity) g = -g;
         for (NodalForce& force : other.forces) force.force.z() *= -1.0;

@@ -77,6 +77,40 @@ TEST_CASE("model: edge unknowns follow the positions, one per edge between print
     CHECK(at == model.size());
 }
 
+TEST_CASE("model: with the fabric's own law under plastic every rim has an unknown of its own triangle") {
+    ModelInput input = patchwork();
+    input.options.fabric_ply = FabricPlyLaw::same_law;
+    const Model model(input);
+    const auto& print = model.input().print;
+    const Eigen::VectorXd x = rolled(model, {});
+    const std::vector<double> before = model.energy_density(x);
+    int at = 3 * model.vertex_count();
+    int rims = 0;
+    for (const Edge& edge : model.edges().edges) {
+        const bool printed0 = !print[edge.triangle[0]].bare();
+        const bool printed1 = !edge.on_boundary() && !print[edge.triangle[1]].bare();
+        if (!printed0 && !printed1) continue;
+        const bool rim = !(printed0 && printed1);
+        rims += rim ? 1 : 0;
+        REQUIRE(at < model.size());
+        const auto around = model.vertices_of_edge_unknown(at - 3 * model.vertex_count());
+        CHECK(around[0] == edge.vertex[0]);
+        CHECK(around[1] == edge.vertex[1]);
+        CHECK((around[2] == around[3]) == rim);
+        Eigen::VectorXd moved = x;
+        moved[at++] += 0.05;
+        const std::vector<double> after = model.energy_density(moved);
+        for (int t = 0; t < int(after.size()); ++t) {
+            const bool beside = t == edge.triangle[0] || t == edge.triangle[1];
+            CHECK((after[t] != before[t]) == (beside && !print[t].bare()));
+        }
+    }
+    CHECK(at == model.size());
+    CHECK(rims > 10);
+    input.options.edge_normals = EdgeNormals::averaged;
+    CHECK(Model(input).size() == 3 * model.vertex_count());
+}
+
 TEST_CASE("model: a positive edge unknown bends the edge's first triangle more and its second one less") {
     ModelInput input = square();
     input.print.assign(2, {.front = 0.6});

@@ -8,6 +8,8 @@
 #include "ruche/energy/fabric_bending.hpp"
 #include "ruche/energy/fabric_membrane.hpp"
 #include "ruche/energy/laminate_term.hpp"
+#include "ruche/energy/rod_edge.hpp"
+#include "ruche/energy/rod_joint.hpp"
 #include "ruche/material/material.hpp"
 
 /// The energies of the theory page, each as one formula on a scalar type S (double or Jet): the oracle that
@@ -155,6 +157,8 @@ S laminate_energy(const Form<S>& a, const Form<S>& b, std::span<const Ply> plies
 struct LaminateElement {
     LaminateTerm::Element element;
     double poissons_ratio;
+    Material material = {};           ///< of the fabric ply when it has the fabric's own law
+    FabricLaw::Options options = {};  ///< of that law
 
     template <class S>
     S energy(std::span<const S> x) const {
@@ -172,6 +176,7 @@ struct LaminateElement {
         for (int i = 0; i < 3; ++i) {
             const LaminateTerm::EdgeSide& side = element.sides[i];
             free[i] = side.kind == LaminateTerm::EdgeSide::Kind::free_rim;
+            if (side.kind == LaminateTerm::EdgeSide::Kind::open_rim) c[i] = x[18 + i];
             if (side.kind != LaminateTerm::EdgeSide::Kind::hinged) continue;
             const Point<S> start = point((i + 1) % 3);
             const Point<S> end = point((i + 2) % 3);
@@ -182,12 +187,37 @@ struct LaminateElement {
         }
         const auto energy_of = [&](const std::array<S, 3>& k) -> S {
             const Form<S> b{2.0 * (k[0] + k[1]), 2.0 * k[0], 2.0 * (k[0] + k[2])};
-            return laminate_energy(a, b, element.plies, poissons_ratio);
+            S energy = laminate_energy(a, b, element.plies, poissons_ratio);
+            if (element.fabric) energy = energy + fabric_energy(a, b);
+            return energy;
         };
         return least_over_free(energy_of, c, free);
     }
 
   private:
+    /// Three-point Gauss quadrature through the fabric's thickness.
+    template <class S>
+    S fabric_energy(const Form<S>& a, const Form<S>& b) const {
+        const auto& p = element.fabric->relaxed;
+        Mat2 edges;
+        edges << p[1] - p[0], p[2] - p[0];
+        const Mat2 d = edges.inverse();
+        const double t = element.fabric->z1 - element.fabric->z0;
+        S energy(0.0);
+        for (const int q : {-1, 0, 1}) {
+            const double z = element.fabric->z0 + 0.5 * t * (1.0 + q * std::sqrt(3.0 / 5.0));
+            const Form<S> m{a.m11 - 2.0 * z * b.m11, a.m12 - 2.0 * z * b.m12, a.m22 - 2.0 * z * b.m22};
+            const auto entry = [&](int i, int j) -> S {
+                return d(0, i) * d(0, j) * m.m11 + (d(0, i) * d(1, j) + d(1, i) * d(0, j)) * m.m12 +
+                       d(1, i) * d(1, j) * m.m22;
+            };
+            energy =
+                energy + (q == 0 ? 4.0 / 9.0 : 5.0 / 18.0) * t * 0.5 * edges.determinant() *
+                             fabric_density<S>({entry(0, 0), entry(0, 1), entry(1, 1)}, material, options);
+        }
+        return energy;
+    }
+
     /// The least value of a quadratic function over the components of c that are free, from nothing but
     /// values of the function: with its values at -1, 0 and 1 the minimum of a parabola is known.
     template <class S, class F>
@@ -206,6 +236,75 @@ struct LaminateElement {
         const S slope = 0.5 * (right - left);
         const S curvature = left + right - 2.0 * middle;
         return middle - 0.5 * (slope * slope / curvature);
+    }
+};
+
+/// A unit vector.
+template <class S>
+Point<S> normalised(const Point<S>& p) {
+    using std::sqrt;
+    const S length = sqrt(dot(p, p));
+    return {p[0] / length, p[1] / length, p[2] / length};
+}
+template <class S>
+Point<S> scaled(const S& k, const Point<S>& p) {
+    return {k * p[0], k * p[1], k * p[2]};
+}
+
+/// A rod's edge; unknowns: start, end, corners left and right, y.
+struct RodEdgeElement {
+    RodEdge::Element element;
+
+    template <class S>
+    S energy(std::span<const S> x) const {
+        using std::tan;
+        const auto point = [&](int v) -> Point<S> { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; };
+        const Point<S> d = point(1) - point(0);
+        const double length = element.length;
+        const S strain = 0.5 * ((1.0 / (length * length)) * dot(d, d) - 1.0);
+        const S half = 0.5 * dihedral(point(0), point(1), point(2), point(3));
+        const S phi = (1.0 / length) * x[12];
+        const S left = tan(0.5 * (half - phi));
+        const S right = tan(0.5 * (half + phi));
+        return 0.5 * element.stretching_stiffness * length * (strain * strain) +
+               4.0 * element.hinge_stiffness * (left * left + right * right);
+    }
+};
+
+/// Two edges of a rod; unknowns: three vertices, corners left and right of each edge, two y.
+struct RodJointElement {
+    RodJoint::Element element;
+
+    template <class S>
+    S energy(std::span<const S> x) const {
+        const std::array<std::array<Point<S>, 3>, 2> frames = {frame<S>(x, 0), frame<S>(x, 1)};
+        const auto d = [&](int i, int j) -> S { return dot(frames[0][i], frames[1][j]); };
+        const S divisor = d(0, 0) + d(1, 1) + d(2, 2) + 1.0;
+        const double l = 0.5 * (element.lengths[0] + element.lengths[1]);
+        S sum(0.0);
+        for (int k = 0; k < 3; ++k) {
+            const int i = (k + 1) % 3;
+            const int j = (k + 2) % 3;
+            const S off = 2.0 * (d(j, i) - d(i, j)) / divisor - element.rest[k];
+            sum = sum + 0.5 * element.stiffness[k] / l * (off * off);
+        }
+        return sum;
+    }
+
+  private:
+    template <class S>
+    std::array<Point<S>, 3> frame(std::span<const S> x, int e) const {
+        using std::cos;
+        using std::sin;
+        const auto point = [&](int v) -> Point<S> { return {x[3 * v], x[3 * v + 1], x[3 * v + 2]}; };
+        const Point<S> d = point(e + 1) - point(e);
+        const Point<S> left = normalised(cross(d, point(3 + 2 * e) - point(e)));
+        const Point<S> right = normalised(cross(point(4 + 2 * e) - point(e), d));
+        const Point<S> t = normalised(d);
+        const Point<S> mean = normalised(left + right);
+        const S phi = (element.signs[e] / element.lengths[e]) * x[21 + e];
+        const Point<S> n = scaled(S(cos(phi)), mean) + scaled(S(sin(phi)), cross(t, mean));
+        return {t, cross(n, t), n};
     }
 };
 

@@ -1,11 +1,15 @@
 #include "energy/oracle_model.hpp"
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 #include <numbers>
 #include <utility>
 #include <vector>
 
 #include "energy/oracle.hpp"
+#include "ruche/energy/rods.hpp"
+#include "ruche/material/rod_section.hpp"
 
 namespace ruche::test {
 namespace {
@@ -38,7 +42,19 @@ class Oracle {
             }
             add_weight(t);
         }
-        for (const Key& key : order_) add_hinge(sides_.at(key));
+        for (const Rod& rod : input_.rods) {
+            for (std::size_t k = 0; k + 1 < rod.vertices.size(); ++k)
+                ++rods_on_[std::minmax(rod.vertices[k], rod.vertices[k + 1])];
+        }
+        for (const Key& key : order_) {
+            if (!rods_on_.contains(key)) add_hinge(sides_.at(key));
+        }
+        int unknown = 3 * vertices_;
+        for (const Rod& rod : input_.rods) {
+            add_rod(rod, unknown);
+            unknown += static_cast<int>(rod.vertices.size()) - 1;
+        }
+        add_joints();
         for (const NodalForce& f : input_.forces) add_force(f.vertex, f.force);
         if (input_.table.present) add_table();
         return sums_;
@@ -65,8 +81,11 @@ class Oracle {
         int next = 3 * vertices_;
         for (const Key& k : order_) {
             Sides& s = sides_[k];
-            const bool inner = s.of.size() == 2 && !bare(s.of[0].first) && !bare(s.of[1].first);
-            if (inner && input_.options.edge_normals == EdgeNormals::free) s.unknown = next++;
+            const auto printed =
+                std::count_if(s.of.begin(), s.of.end(), [&](const auto& side) { return !bare(side.first); });
+            const bool own_law = input_.options.fabric_ply == FabricPlyLaw::same_law;
+            const bool unknown = printed == 2 || (printed == 1 && own_law);
+            if (unknown && input_.options.edge_normals == EdgeNormals::free) s.unknown = next++;
         }
     }
 
@@ -91,12 +110,98 @@ class Oracle {
         }
     }
 
+    std::array<Vec2, 3> relaxed(int t) const {
+        return {relax_ * layout(t, 0), relax_ * layout(t, 1), relax_ * layout(t, 2)};
+    }
+    FabricLaw::Options law_options() const {
+        return {.log_extension = input_.options.log_extension,
+                .tensor_shear = input_.options.shear_strain == ShearStrain::tensor};
+    }
+
     void add_fabric(int t) {
-        const bool tensor = input_.options.shear_strain == ShearStrain::tensor;
-        const FabricElement element{{relax_ * layout(t, 0), relax_ * layout(t, 1), relax_ * layout(t, 2)},
-                                    input_.material,
-                                    {.log_extension = input_.options.log_extension, .tensor_shear = tensor}};
+        const FabricElement element{relaxed(t), input_.material, law_options()};
         add<9>(element, {vertex(t, 0), vertex(t, 1), vertex(t, 2)});
+    }
+
+    double hinge_stiffness(const Sides& s) const {
+        const auto [t, i] = s.of[0];
+        const double rest_area =
+            (area(t) + area(s.of[1].first)) / (input_.prestretch[0] * input_.prestretch[1]);
+        const double length2 = (relax_ * (layout(t, i + 2) - layout(t, i + 1))).squaredNorm();
+        const double factor = input_.options.bending_normalisation == BendingNormalisation::plate ? 1.0 : 6.0;
+        return factor * input_.material.fabric_bending_stiffness * length2 / rest_area;
+    }
+
+    /// Corners to the left and right of the way from a to b.
+    std::array<int, 2> corners(int a, int b) {
+        const Sides& s = sides_.at(std::minmax(a, b));
+        const auto [t, i] = s.of[0];
+        const std::array<int, 2> found = {vertex(t, i), vertex(s.of[1].first, s.of[1].second)};
+        return vertex(t, i + 1) == a ? found : std::array<int, 2>{found[1], found[0]};
+    }
+
+    RodSection section(const Rod& rod) const {
+        const Material& m = input_.material;
+        return {rod.width, rod.thickness,
+                rod.youngs_modulus > 0.0 ? rod.youngs_modulus : m.plastic_youngs_modulus,
+                m.laminate_poissons_ratio};
+    }
+    Vec2 along(int a, int b) const { return input_.mesh.vertices[b] - input_.mesh.vertices[a]; }
+
+    void add_rod(const Rod& rod, int unknown) {
+        for (std::size_t k = 0; k + 1 < rod.vertices.size(); ++k) {
+            const int a = rod.vertices[k];
+            const int b = rod.vertices[k + 1];
+            const auto [left, right] = corners(a, b);
+            const double hinge =
+                hinge_stiffness(sides_.at(std::minmax(a, b))) / rods_on_.at(std::minmax(a, b));
+            const int y = unknown + static_cast<int>(k);
+            const double length = along(a, b).norm();
+            add<13>(RodEdgeElement{{{}, -1, length, stretching_stiffness(section(rod)), hinge}},
+                    {a, b, left, right}, {y});
+            const double mass = 1e-12 * input_.material.plastic_density * rod.width * rod.thickness * length;
+            const Vec3 g(input_.gravity[0], input_.gravity[1], input_.gravity[2]);
+            add_force(a, 0.5 * mass * g);
+            add_force(b, 0.5 * mass * g);
+            ends_.push_back({&rod, y, a, b, 1.0});
+            ends_.push_back({&rod, y, b, a, -1.0});
+        }
+    }
+
+    /// An edge of a rod as seen from one of its ends.
+    struct End {
+        const Rod* rod;
+        int y, at, far;
+        double sign;
+    };
+
+    void add_joints() {
+        for (std::size_t i = 0; i < ends_.size(); ++i) {
+            for (std::size_t j = 0; j < i; ++j) {
+                const bool met = ends_[i].at == ends_[j].at && ends_[i].far != ends_[j].far;
+                if (met && ends_[i].rod->side == ends_[j].rod->side) add_joint(ends_[i], ends_[j]);
+            }
+        }
+    }
+
+    void add_joint(const End& in, const End& out) {
+        const Vec2 d = along(in.far, in.at);
+        const Vec2 e = along(out.at, out.far);
+        const auto half = [&](const Rod& rod, const Vec2& step) -> Mat3 {
+            const Vec3 turn = 0.5 * step.norm() * natural_curvature(input_, rod, step.normalized());
+            return Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+        };
+        const double turn = std::atan2(d.x() * e.y() - d.y() * e.x(), d.dot(e));
+        const Mat3 rest =
+            half(*in.rod, d) * Eigen::AngleAxisd(turn, Vec3::UnitZ()).toRotationMatrix() * half(*out.rod, e);
+        const Vec3 kappa = 2.0 / (1.0 + rest.trace()) *
+                           Vec3(rest(2, 1) - rest(1, 2), rest(0, 2) - rest(2, 0), rest(1, 0) - rest(0, 1));
+        const Vec3 stiffness =
+            0.5 * (turning_stiffness(section(*in.rod)) + turning_stiffness(section(*out.rod)));
+        const auto [left, right] = corners(in.far, in.at);
+        const auto [left1, right1] = corners(out.at, out.far);
+        add<23>(RodJointElement{{{}, {}, {}, {d.norm(), e.norm()}, {-in.sign, out.sign}, stiffness, kappa}},
+                {in.far, in.at, out.far, left, right, left1, right1}, {in.y, out.y});
     }
 
     void add_hinge(const Sides& s) {
@@ -104,10 +209,7 @@ class Oracle {
         const auto [t, i] = s.of[0];
         const auto [u, j] = s.of[1];
         if (!bare(t) && !bare(u)) return;
-        const double rest_area = (area(t) + area(u)) / (input_.prestretch[0] * input_.prestretch[1]);
-        const double length2 = (relax_ * (layout(t, i + 2) - layout(t, i + 1))).squaredNorm();
-        const double factor = input_.options.bending_normalisation == BendingNormalisation::plate ? 1.0 : 6.0;
-        const HingeElement element{factor * input_.material.fabric_bending_stiffness * length2 / rest_area};
+        const HingeElement element{hinge_stiffness(s)};
         add<12>(element, {vertex(t, i + 1), vertex(t, i + 2), vertex(t, i), vertex(u, j)});
     }
 
@@ -126,11 +228,16 @@ class Oracle {
         // z = 0 at the interface; in mid-fabric when both sides are printed.
         double bottom = print.back > 0.0 ? 0.0 : -fabric;
         if (print.front > 0.0 && print.back > 0.0) bottom = -0.5 * fabric;
-        LaminateElement element{{}, m.laminate_poissons_ratio};
+        LaminateElement element{{}, m.laminate_poissons_ratio, m, law_options()};
         element.element.plies = {
             {bottom, bottom + fabric, m.fabric_youngs_modulus, fabric_metric},
             {bottom + fabric, bottom + fabric + scale * print.front, front_modulus, metric},
             {bottom - scale * print.back, bottom, back_modulus, metric}};
+        if (input_.options.fabric_ply == FabricPlyLaw::same_law) {
+            element.element.plies.erase(element.element.plies.begin());
+            element.element.fabric = {
+                bottom, bottom + fabric, {layout(t, 0), layout(t, 1), layout(t, 2)}, relaxed(t)};
+        }
         std::vector<int> nodes = {vertex(t, 0), vertex(t, 1), vertex(t, 2)};
         std::vector<int> unknowns;
         for (int i = 0; i < 3; ++i) {
@@ -156,8 +263,9 @@ class Oracle {
     }
 
     LaminateTerm::EdgeSide::Kind rim_kind() const {
-        return input_.options.edge_normals == EdgeNormals::free ? LaminateTerm::EdgeSide::Kind::free_rim
-                                                                : LaminateTerm::EdgeSide::Kind::clamped_rim;
+        using Kind = LaminateTerm::EdgeSide::Kind;
+        if (input_.options.edge_normals != EdgeNormals::free) return Kind::clamped_rim;
+        return input_.options.fabric_ply == FabricPlyLaw::same_law ? Kind::open_rim : Kind::free_rim;
     }
 
     void add_force(int v, const Vec3& force) {
@@ -198,6 +306,8 @@ class Oracle {
     Mat2 relax_;
     std::map<Key, Sides> sides_;
     std::vector<Key> order_;
+    std::map<Key, int> rods_on_;
+    std::vector<End> ends_;
     Sums sums_;
 };
 

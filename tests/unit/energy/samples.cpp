@@ -73,6 +73,31 @@ ModelInput patchwork() {
     return input;
 }
 
+ModelInput rod_patchwork() {
+    ModelInput input = patchwork();
+    input.print.clear();
+    input.options.strips = StripModel::rods;
+    const auto line = [&](const std::vector<Vec2>& points) {
+        std::vector<int> vertices;
+        for (const Vec2& p : points) {
+            const auto nearer = [&](const Vec2& a, const Vec2& b) { return (a - p).norm() < (b - p).norm(); };
+            vertices.push_back(static_cast<int>(std::ranges::min_element(input.mesh.vertices, nearer) -
+                                                input.mesh.vertices.begin()));
+        }
+        return vertices;
+    };
+    input.rods = {
+        {.vertices = line({{0, 2}, {1, 2}, {2, 2}, {3, 2}, {3, 3}, {4, 3}}), .width = 1.2, .thickness = 0.6},
+        {.vertices = line({{2, 4}, {2, 3}, {2, 2}, {2, 1}}),
+         .width = 0.8,
+         .thickness = 0.5,
+         .side = Side::back,
+         .youngs_modulus = 30.0},
+        {.vertices = line({{3, 2}, {2, 2}, {1, 2}}), .width = 1.0, .thickness = 0.4, .side = Side::back},
+        {.vertices = line({{3, 1}, {4, 1}}), .width = 1.0, .thickness = 0.4}};
+    return input;
+}
+
 std::vector<SetUp> set_ups() {
     std::vector<SetUp> result;
     const auto add = [&](const char* name, auto&& change, bool turns_freely = true) {
@@ -99,6 +124,26 @@ std::vector<SetUp> set_ups() {
     });
     add("averaged edge normals",
         [](ModelInput& input) { input.options.edge_normals = EdgeNormals::averaged; });
+    add("fabric's own law under plastic, several moduli", [&](ModelInput& input) {
+        input.options.fabric_ply = FabricPlyLaw::same_law;
+        for_each_print(input, [](Print& print, int t) {
+            print = {.front = t % 3 == 0 ? 0.0 : 0.5, .back = t % 3 == 1 ? 0.0 : 0.3, .back_modulus = 5.0};
+        });
+    });
+    add("fabric's own law under plastic, averaged edge normals, as printed, tensor shear",
+        [](ModelInput& input) {
+            input.options.fabric_ply = FabricPlyLaw::same_law;
+            input.options.edge_normals = EdgeNormals::averaged;
+            input.options.laminate_thickness = LaminateThickness::as_printed;
+            input.options.shear_strain = ShearStrain::tensor;
+        });
+    result.push_back({"rods", rod_patchwork()});
+    ModelInput oblique = rod_patchwork();
+    oblique.prestretch = {1.5, 1.3};
+    oblique.fabric_axis_deg = 30.0;
+    oblique.gravity = {0.0, 0.0, -9810.0};
+    oblique.options.bending_normalisation = BendingNormalisation::as_printed;
+    result.push_back({"rods, unequal pre-stretch, weight", oblique, false});
     add("anisotropic pre-stretch and axis angle", [](ModelInput& input) {
         input.prestretch = {1.5, 1.3};
         input.fabric_axis_deg = 30.0;
@@ -158,15 +203,23 @@ PrintedLaminate sample_print(bool front, bool back) {
             .fabric_modulus = 1.05};
 }
 
+/// The relaxed fabric of the stars, in fabric axes.
+static const Mat2 star_relaxation = Vec2(1.0 / 1.7, 1.0 / 1.5).asDiagonal();
+
 LaminateTerm::Element laminate_element(const Star& star, const std::array<EdgeKind, 3>& kinds,
                                        const PrintedLaminate& print) {
     using Kind = LaminateTerm::EdgeSide::Kind;
     LaminateTerm::Element element{.vertices = {0, 1, 2},
                                   .layout = {star.layout[0], star.layout[1], star.layout[2]},
                                   .sides = {},
-                                  .plies = {}};
+                                  .plies = {},
+                                  .fabric = {}};
     for (int i = 0; i < 3; ++i) {
         LaminateTerm::EdgeSide& side = element.sides[i];
+        if (kinds[i] == EdgeKind::open_rim) {
+            side = {.kind = Kind::open_rim, .unknown = 6 + i};
+            continue;
+        }
         if (kinds[i] == EdgeKind::free_rim || kinds[i] == EdgeKind::clamped_rim) {
             side.kind = kinds[i] == EdgeKind::free_rim ? Kind::free_rim : Kind::clamped_rim;
             continue;
@@ -179,8 +232,18 @@ LaminateTerm::Element laminate_element(const Star& star, const std::array<EdgeKi
     }
     Mat2 edges;
     edges << star.layout[1] - star.layout[0], star.layout[2] - star.layout[0];
-    const Mat2 fabric = Vec2(1.0 / 1.7, 1.0 / 1.5).asDiagonal() * edges;
+    const Mat2 fabric = star_relaxation * edges;
     element.plies = printed_plies(print, edges.transpose() * edges, fabric.transpose() * fabric);
+    return element;
+}
+
+LaminateTerm::Element with_fabric_law(LaminateTerm::Element element) {
+    const auto& p = element.layout;
+    element.fabric = {element.plies[0].z0,
+                      element.plies[0].z1,
+                      p,
+                      {star_relaxation * p[0], star_relaxation * p[1], star_relaxation * p[2]}};
+    element.plies.erase(element.plies.begin());
     return element;
 }
 

@@ -29,6 +29,9 @@ Eigen::VectorXd rolled(const Model& model, const Roll& roll);
 /// A 5 x 4 grid on which every kind of edge occurs: bare-bare, bare-printed, printed-printed, boundary.
 ModelInput patchwork();
 
+/// The patchwork without print, with rods on the front and the back that cross, run side by side and bend.
+ModelInput rod_patchwork();
+
 /// Named variants of the patchwork: each option, print side, modulus, pre-stretch and load that the model
 /// has.
 struct SetUp {
@@ -47,9 +50,11 @@ struct Star {
 Star random_star(unsigned seed, double bend = 0.5);
 
 /// The printed triangle of a star: two-sided, with the given kinds of edges.
-enum class EdgeKind { free, averaged, free_rim, clamped_rim };
+enum class EdgeKind { free, averaged, free_rim, open_rim, clamped_rim };
 LaminateTerm::Element laminate_element(const Star& star, const std::array<EdgeKind, 3>& kinds,
                                        const PrintedLaminate& print);
+/// The same, its fabric ply with the fabric's own law.
+LaminateTerm::Element with_fabric_law(LaminateTerm::Element element);
 PrintedLaminate sample_print(bool front, bool back);
 
 /// The first N entries of a state as jets.

@@ -54,6 +54,25 @@ TEST_CASE("border graph: a border that two regions share is there once and knows
     CHECK(shared == 1);
 }
 
+TEST_CASE(
+    "border graph: open lines come after the regions, cross borders and each other, and bound nothing") {
+    const std::vector<Region> regions = {box(0, 0, 4, 2)};
+    const std::vector<Polyline> lines = {{Vec2(1, 1), Vec2(5, 1)}, {Vec2(2, 0.5), Vec2(2, 1.5), Vec2(3, 2)}};
+    const BorderGraph graph = border_graph(regions, 1e-3, lines);
+    CHECK(is_clean(graph, 1e-3));
+    // 4 corners, ends and the bend of the lines, where they cross (2, 1), (4, 1); (3, 2) lies on the border.
+    CHECK(graph.points.size() == 4 + 2 + 3 + 2);
+    const auto of = [&](int number) {
+        return std::count_if(graph.segments.begin(), graph.segments.end(), [&](const auto& s) {
+            return std::find(s.regions.begin(), s.regions.end(), number) != s.regions.end();
+        });
+    };
+    CHECK(of(0) == 6);
+    CHECK(of(1) == 3);
+    CHECK(of(2) == 3);
+    CHECK(area(region_of(graph, 0)) == doctest::Approx(8.0));
+}
+
 TEST_CASE("border graph: crossing borders meet at a point of both") {
     const std::vector<Region> regions = {box(0, 0, 3, 1), box(1, -1, 2, 2)};
     const BorderGraph graph = border_graph(regions, 1e-3);
