@@ -44,10 +44,14 @@ density_kg_per_m3 = {}
 }
 
 std::string table_of(const VirtualCurve& curve, const VirtualSamples& s, const std::string& file) {
-    if (curve.test == "tension")
-        return fmt::format(
-            "\n[[tension]]\nfile = \"{}\"\nangle_deg = {}\nlength_mm = {}\nwidth_mm = {}\ngrips = \"{}\"\n",
-            file, curve.angle, s.length, s.width, s.grip_width > 0.0 ? "dogbone" : "wide");
+    if (curve.test == "tension") {
+        const std::string table =
+            fmt::format("\n[[tension]]\nfile = \"{}\"\nangle_deg = {}\nlength_mm = {}\nwidth_mm = {}\n", file,
+                        curve.angle, s.length, s.width);
+        if (s.grip_width == 0.0) return table + "grips = \"wide\"\n";
+        return table + fmt::format("grips = \"dogbone\"\ngrip_width_mm = {}\ngauge_length_mm = {}\n",
+                                   s.grip_width, s.gauge_length);
+    }
     if (curve.test == "shear")
         return fmt::format("\n[[shear]]\nfile = \"{}\"\nangle_deg = {}\nheight_mm = {}\nwidth_mm = {}\n",
                            file, curve.angle, s.shear_side, s.shear_side);
