@@ -47,6 +47,7 @@ struct PlasticMeasurements {
 /// What all tests with a file have in common.
 struct TestFile {
     std::string file;  ///< seen from the program's working folder
+    int specimen = 0;  ///< which of the file's, from 1; 0: it has one only
     ColumnOptions columns;
     Place place;  ///< of its table in the campaign
 };

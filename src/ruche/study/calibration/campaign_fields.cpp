@@ -11,6 +11,9 @@ constexpr std::string_view branch_names[] = {"unknown", "loading", "unloading"};
 constexpr std::string_view printed_parameters[] = {"fabric_thickness", "fabric_youngs_modulus",
                                                    "plastic_youngs_modulus"};
 constexpr double most_mm = 1e4;
+constexpr std::string_view specimen_meaning =
+    "Which specimen of a file that has several, one below the other or side by side, from 1; 0: there is "
+    "one.";
 
 }  // namespace
 
@@ -74,6 +77,7 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
     using T = TensionTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"angle_deg", &T::angle_deg, "deg", -180, 180, "Angle of the pull from the fabric's first axis."},
         {"length_mm", &T::length_mm, "mm", 1, most_mm, "Relaxed length between the clamps (or the marks)."},
         {"width_mm", &T::width_mm, "mm", 0.5, most_mm, "Relaxed width of the sample."},
@@ -103,6 +107,7 @@ std::span<const Field<ShearTest>> fields<ShearTest>() {
     using T = ShearTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"angle_deg", &T::angle_deg, "deg", -180, 180,
          "Angle from the fabric's first axis to the direction from clamp to clamp."},
         {"height_mm", &T::height_mm, "mm", 1, most_mm, "Distance of the two clamps."},
@@ -128,6 +133,7 @@ std::span<const Field<PlasticTest>> fields<PlasticTest>() {
     using T = PlasticTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"length_mm", &T::length_mm, "mm", 1, most_mm, "Length between the clamps (or the marks)."},
         {"width_mm", &T::width_mm, "mm", 0.1, most_mm, "Width of the strip."},
         {"thickness_mm", &T::thickness_mm, "mm", 0.01, 100, "Thickness of the strip as measured."},

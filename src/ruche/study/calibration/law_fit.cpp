@@ -114,8 +114,10 @@ LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options) {
         result.correlations = strong_correlations(law, fit);
         result.left_out = leave_out(law, fit, curves);
     } else {
+        const Eigen::VectorXd half =
+            covariance(law.problem(), fit).deviation * std::sqrt(profile_threshold(law, correlation));
         for (int i = 0; i < law.parameter_count(); ++i)
-            result.parameters.push_back({law.parameter(i), fit.p[i], fit.p[i], fit.p[i]});
+            result.parameters.push_back({law.parameter(i), fit.p[i], fit.p[i] - half[i], fit.p[i] + half[i]});
     }
     result.material = law.material(fit.p);
     result.converged = fit.converged;

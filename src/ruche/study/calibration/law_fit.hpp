@@ -24,7 +24,9 @@ struct LawCurve {
 struct LawFitOptions {
     Material start;            ///< values of what is not fitted; those of the others are not used
     bool fit_poisson = false;  ///< with the widths; else start's Poisson's ratio is taken as it is
-    bool intervals = true;     ///< profile likelihood, leave one orientation out: a hundred further fits
+    /// Profile likelihood and leaving orientations out, a hundred further fits; else intervals are those of
+    /// the law made linear at the optimum.
+    bool intervals = true;
 };
 
 /// One parameter of the fit.

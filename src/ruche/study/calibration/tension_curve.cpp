@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "ruche/study/calibration/pull.hpp"
 #include "ruche/study/calibration/statistics.hpp"
@@ -38,6 +39,47 @@ void flip_if_negative(TensionCurve& curve) {
         flip(r.displacement);
         curve.warnings.push_back(r.file + ": the displacement is negative; its sign was turned");
     }
+}
+
+/// A displacement that begins far from 0 while nothing pulls is a position: the distance between the grips,
+/// or wherever the crosshead stood.
+void set_position_to_zero(TensionCurve& curve) {
+    TestRecord& r = curve.record;
+    const double start = r.displacement.front();
+    const double largest = *std::max_element(r.force.begin(), r.force.end());
+    if (start < 0.3 * curve.test.length_mm || std::abs(r.force.front()) > 0.1 * largest) return;
+    const bool is_length = std::abs(start - curve.test.length_mm) < 0.03 * curve.test.length_mm;
+    const double zero = is_length ? curve.test.length_mm : start;
+    for (double& d : r.displacement) d -= zero;
+    curve.warnings.push_back(
+        is_length
+            ? fmt::format("{}: the displacement begins at {:.4g} mm, about length_mm: it was taken for the "
+                          "distance between the grips",
+                          r.file, start)
+            : fmt::format("{}: the displacement begins at {:.4g} mm without a pull: it was taken for a "
+                          "position, and length_mm for the length there",
+                          r.file, start));
+}
+
+/// What the machine did before the record began, or cannot resolve.
+void warn_of_force(TensionCurve& curve) {
+    const TestRecord& r = curve.record;
+    const Cycle& first = curve.cycles.front();
+    const double largest = *std::max_element(r.force.begin(), r.force.end());
+    constexpr double much = 0.06;
+    if (first.peak > first.begin && !r.driven_by_force && r.force[first.begin] > much * largest)
+        curve.warnings.push_back(fmt::format(
+            "{}:{}: it pulls with {:.3g} N ({:.0f} % of the largest force) when the record begins: the "
+            "load cell was not set to zero, or the sample was pre-loaded and longer than length_mm by "
+            "an unknown amount",
+            r.file, r.line[first.begin], r.force[first.begin], 100.0 * r.force[first.begin] / largest));
+    constexpr std::size_t few = 20;
+    const std::set<double> different(r.force.begin(), r.force.end());
+    if (r.size() > 5 * few && different.size() < few)
+        curve.warnings.push_back(
+            fmt::format("{}: the force has {} different values only: export it with more digits, "
+                        "or take a smaller load cell",
+                        r.file, different.size()));
 }
 
 std::size_t choose_cycle(const TensionCurve& curve) {
@@ -200,14 +242,17 @@ std::string TensionCurve::name() const {
 
 TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     TensionCurve curve{.test = test, .rest_length = test.length_mm};
-    const CsvTable table = read_csv_table(test.file);
-    curve.record =
-        read_record(table, {.columns = test.columns, .length_mm = test.length_mm, .width_mm = test.width_mm});
+    const CsvTable table = read_csv_table(test.file, test.specimen);
+    curve.record = read_record(table, {.columns = test.columns,
+                                       .length_mm = test.length_mm,
+                                       .width_mm = test.width_mm,
+                                       .specimen = test.specimen});
     curve.warnings = curve.record.warnings;
     if (curve.record.size() < fewest_rows)
         throw InputError(place(test), fmt::format("has {} rows of numbers; at least {} are needed",
                                                   curve.record.size(), fewest_rows));
     flip_if_negative(curve);
+    set_position_to_zero(curve);
     curve.cycles = find_cycles(curve.record);
     if (curve.cycles.empty())
         throw InputError(place(test), "the displacement never changes",
@@ -220,6 +265,7 @@ TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     check_swapped(curve);
     check_widths(curve);
     warn_of_falls(curve);
+    warn_of_force(curve);
     if (curve.largest_stretch() < 1.0 + 0.8 * (test.prestretch - 1.0))
         curve.warnings.push_back(fmt::format(
             "{}: measured up to a stretch of {:.3f} only, used at {:.3g}: beyond the data the law is "
