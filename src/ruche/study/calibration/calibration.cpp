@@ -25,7 +25,8 @@ LawCurve law_curve(const TensionCurve& test) {
             .angle_deg = test.test.angle_deg,
             .stretch = test.stretch,
             .nominal_stress = test.nominal_stress,
-            .transverse = test.transverse};
+            .transverse = test.transverse,
+            .by_force = test.record.driven_by_force};
 }
 
 /// Fits one pre-stretch after the other.
@@ -37,7 +38,7 @@ class Calibrator {
     void run() {
         const CardValue& thickness = set_value(measured_values(result_), "fabric_thickness");
         thickness_ = thickness.value;
-        if (thickness.source.starts_with("assumed"))
+        if (thickness.source.starts_with("assumed") && !campaign_.tension.empty())
             result_.warnings.push_back(
                 "the fabric's thickness was not measured: stiffness per width is right, moduli and curvature "
                 "are not");
@@ -86,6 +87,8 @@ class Calibrator {
                                           measured_values(result_).values.at("fabric_areal_density").value);
         warn_of_bending();
         if (!result_.shear.empty()) result_.shear_modulus = mean_slope_of(result_.shear);
+        if (campaign_.tension.empty() && !result_.shear.empty())
+            result_.warnings.push_back("shear tests without tension tests are drawn, but determine nothing");
     }
 
     void warn_of_bending() {
@@ -321,7 +324,7 @@ Calibration calibrate(const Campaign& campaign, const Control& control) {
     result.card.description = campaign.options.description;
     if (!campaign.plastic.thickness_mm.empty())
         result.card.printed_thickness = mean_of(campaign.plastic.thickness_mm, "measured");
-    if (!campaign.tension.empty()) Calibrator(result, control).run();
+    Calibrator(result, control).run();
     if (!campaign.printed.empty()) fit_printed_samples(result, control);
     result.card.warnings = result.warnings;
     return result;

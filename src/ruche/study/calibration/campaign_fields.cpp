@@ -173,4 +173,71 @@ std::span<const Field<PrintedFitOptions>> fields<PrintedFitOptions>() {
     return table;
 }
 
+template <>
+std::span<const Readings<FabricMeasurements>> readings<FabricMeasurements>() {
+    using F = FabricMeasurements;
+    static const Readings<F> table[] = {
+        {{"thickness_mm", "mm", 1e-3, 20,
+          "Readings of the relaxed fabric's thickness; else 0.46 mm is assumed."},
+         &F::thickness_mm},
+        {{"areal_density_kg_per_m2", "kg/m^2", 1e-3, 20, "Mass per area of the relaxed fabric."},
+         &F::areal_density_kg_per_m2},
+        {{"sample_mass_g", "g", 1e-6, 1e5, "Instead of it: masses of pieces of sample_area_mm2."},
+         &F::sample_mass_g},
+    };
+    return table;
+}
+
+template <>
+std::span<const Readings<PlasticMeasurements>> readings<PlasticMeasurements>() {
+    using P = PlasticMeasurements;
+    static const Readings<P> table[] = {
+        {{"thickness_mm", "mm", 1e-3, 20, "Readings of the printed plastic's thickness, for the record."},
+         &P::thickness_mm},
+    };
+    return table;
+}
+
+template <>
+std::span<const Readings<CantileverTest>> readings<CantileverTest>() {
+    using C = CantileverTest;
+    static const Readings<C> table[] = {
+        {{"length_mm", "mm", 0.01, most_mm, "Lengths of the strip that hang over."}, &C::length_mm},
+        {{"x_mm", "mm", 0.01, most_mm, "For each, the horizontal distance of the tip from the edge."},
+         &C::x_mm},
+        {{"y_mm", "mm", 0.01, most_mm, "For each, how far the tip hangs below the edge."}, &C::y_mm},
+    };
+    return table;
+}
+
+template <>
+std::span<const std::string_view> required_keys<TensionTest>() {
+    static constexpr std::string_view keys[] = {"file", "angle_deg", "length_mm", "width_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<ShearTest>() {
+    static constexpr std::string_view keys[] = {"file", "angle_deg", "height_mm", "width_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<PlasticTest>() {
+    static constexpr std::string_view keys[] = {"file", "length_mm", "width_mm", "thickness_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<CantileverTest>() {
+    static constexpr std::string_view keys[] = {"length_mm", "x_mm", "y_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<PrintedSample>() {
+    static constexpr std::string_view keys[] = {"radius_mm"};
+    return keys;
+}
+
 }  // namespace ruche

@@ -61,15 +61,29 @@ std::vector<double> chebyshev(SmoothCoordinate& coordinate, double low, double h
     return stretches;
 }
 
+/// A stretch that was read at the largest load may lie beyond what the law can do: that which it does.
+double stretch_under_load(const LawCurve& curve, const Material& material, double read) {
+    const double load = *std::max_element(curve.nominal_stress.begin(), curve.nominal_stress.end());
+    Pull pull(material, {}, curve.angle_deg);
+    double low = 1.0;
+    double high = 1.5 * read;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (low + high);
+        (middle * pull.at(green_strain(middle), false).stress < load ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+}
+
 void correct(LawCurve& curve, const TensionCurve& test, const Material& material, double element_size) {
     curve.force_ratio.clear();
     curve.width_ratio.clear();
     const bool dogbone = test.test.grips == Grips::dogbone;
     if (dogbone && test.test.grip_width_mm == 0.0) return;
     const auto [low, high] = std::minmax_element(curve.stretch.begin(), curve.stretch.end());
-    const double least = std::max(*low, 1.0 + 0.02 * (*high - 1.0));  // at rest the ratio is 0/0
-    SmoothCoordinate coordinate(material, curve.angle_deg, *high);
-    const std::vector<double> stretches = chebyshev(coordinate, least, *high);
+    const double most = curve.by_force ? stretch_under_load(curve, material, *high) : *high;
+    const double least = std::max(*low, 1.0 + 0.02 * (most - 1.0));  // at rest the ratio is 0/0
+    SmoothCoordinate coordinate(material, curve.angle_deg, most);
+    const std::vector<double> stretches = chebyshev(coordinate, least, most);
     std::vector<double> strains;
     strains.reserve(stretches.size());
     for (const double s : stretches) strains.push_back(s - 1.0);
@@ -92,7 +106,7 @@ void correct(LawCurve& curve, const TensionCurve& test, const Material& material
     if (nodes.size() < 3) return;
     const auto [first, last] = std::minmax_element(nodes.begin(), nodes.end());
     for (const double stretch : curve.stretch) {
-        const double x = std::clamp(coordinate(std::max(stretch, least)), *first, *last);
+        const double x = std::clamp(coordinate(std::clamp(stretch, least, most)), *first, *last);
         curve.force_ratio.push_back(interpolate(nodes, force, x));
         curve.width_ratio.push_back(interpolate(nodes, width, x));
     }

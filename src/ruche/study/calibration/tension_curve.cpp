@@ -204,7 +204,11 @@ void take_rows(TensionCurve& curve, double thickness) {
     const double area = test.width_mm * thickness;
     for (std::size_t i = begin; i < end; i += stride) {
         const double stretch = 1.0 + (r.displacement[i] - curve.zero) / curve.rest_length;
-        if (stretch < 1.0 || (test.pretension_n > 0.0 && r.force[i] < test.pretension_n)) continue;
+        // A length that was read may scatter about the rest length; a clamp that comes back too far makes
+        // folds.
+        if (stretch < (r.driven_by_force ? 0.9 : 1.0) ||
+            (test.pretension_n > 0.0 && r.force[i] < test.pretension_n))
+            continue;
         curve.stretch.push_back(stretch);
         curve.nominal_stress.push_back(r.force[i] / area);
         if (!r.width.empty()) curve.transverse.push_back(green_strain(r.width[i] / test.width_mm));

@@ -26,6 +26,7 @@ name = {}
 description = {}
 mode = "joint"
 prestretch = {}
+element_size_mm = {}
 
 [fabric]
 thickness_mm = {}
@@ -39,8 +40,8 @@ density_kg_per_m3 = {}
 )",
         card, curves.samples.prestretch, machine.noise, machine.hysteresis, machine.seed,
         toml_quoted(card + ", virtual tests"), toml_quoted("Simulated tests of the card " + card),
-        curves.samples.prestretch, m.fabric_thickness, m.fabric_areal_density, m.fabric_youngs_modulus,
-        m.neo_hookean_share, m.plastic_density);
+        curves.samples.prestretch, curves.samples.width / curves.samples.elements_across, m.fabric_thickness,
+        m.fabric_areal_density, m.fabric_youngs_modulus, m.neo_hookean_share, m.plastic_density);
 }
 
 std::string table_of(const VirtualCurve& curve, const VirtualSamples& s, const std::string& file) {
