@@ -41,6 +41,52 @@ void flip_if_negative(TensionCurve& curve) {
     }
 }
 
+/// Rows whose force is off the median of its neighbours by more than half of the test's force: what a cable
+/// or a radio put there, not the sample.
+std::vector<std::size_t> spikes(const TestRecord& record) {
+    std::vector<std::size_t> found;
+    const std::vector<double>& force = record.force;
+    constexpr std::size_t reach = 2;
+    if (record.driven_by_force || force.size() < 20) return found;
+    // All but the largest twentieth, so that spikes do not make the scale.
+    std::vector<double> sizes;
+    for (const double f : force) sizes.push_back(std::abs(f));
+    const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 19 / 20);
+    std::nth_element(sizes.begin(), place, sizes.end());
+    const double scale = *place;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        const std::size_t first = std::min(i > reach ? i - reach : 0, force.size() - 2 * reach - 1);
+        std::vector<double> near(force.begin() + static_cast<std::ptrdiff_t>(first),
+                                 force.begin() + static_cast<std::ptrdiff_t>(first + 2 * reach + 1));
+        std::nth_element(near.begin(), near.begin() + reach, near.end());
+        if (std::abs(force[i] - near[reach]) > 0.5 * scale) found.push_back(i);
+    }
+    return found;
+}
+
+void erase(TestRecord& record, std::size_t row) {
+    const auto from = [&](auto& column) {
+        if (!column.empty()) column.erase(column.begin() + static_cast<std::ptrdiff_t>(row));
+    };
+    from(record.line);
+    from(record.force);
+    from(record.displacement);
+    from(record.width);
+    from(record.branch);
+}
+
+void leave_spikes_out(TensionCurve& curve) {
+    TestRecord& r = curve.record;
+    const std::vector<std::size_t> found = spikes(r);
+    // More than one in twenty are no spikes.
+    if (found.empty() || 20 * found.size() > r.size()) return;
+    curve.warnings.push_back(
+        fmt::format("{}:{}: a force of {:.4g} N stands alone among its neighbours; {} such rows were "
+                    "left out",
+                    r.file, r.line[found.front()], r.force[found.front()], found.size()));
+    for (auto i = found.rbegin(); i != found.rend(); ++i) erase(r, *i);
+}
+
 /// A displacement that begins far from 0 while nothing pulls is a position: the distance between the grips,
 /// or wherever the crosshead stood.
 void set_position_to_zero(TensionCurve& curve) {
@@ -73,6 +119,14 @@ void warn_of_force(TensionCurve& curve) {
             "load cell was not set to zero, or the sample was pre-loaded and longer than length_mm by "
             "an unknown amount",
             r.file, r.line[first.begin], r.force[first.begin], 100.0 * r.force[first.begin] / largest));
+    const Cycle& cycle = curve.cycles[curve.cycle];
+    const double left = r.force[cycle.end - 1];
+    const bool is_back = r.displacement[cycle.end - 1] - curve.zero < 0.03 * r.displacement[cycle.peak];
+    if (is_back && cycle.unloads && !r.driven_by_force && left > much * largest)
+        curve.warnings.push_back(fmt::format(
+            "{}:{}: it still pulls with {:.3g} N ({:.0f} % of the largest force) when the clamp is back: the "
+            "load cell drifts or was not set to zero, and the fit cannot be trusted",
+            r.file, r.line[cycle.end - 1], left, 100.0 * left / largest));
     constexpr std::size_t few = 20;
     const std::set<double> different(r.force.begin(), r.force.end());
     if (r.size() > 5 * few && different.size() < few)
@@ -255,6 +309,7 @@ TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     if (curve.record.size() < fewest_rows)
         throw InputError(place(test), fmt::format("has {} rows of numbers; at least {} are needed",
                                                   curve.record.size(), fewest_rows));
+    leave_spikes_out(curve);
     flip_if_negative(curve);
     set_position_to_zero(curve);
     curve.cycles = find_cycles(curve.record);
