@@ -5,17 +5,22 @@
 
 #include "ruche/cli/verbs.hpp"
 #include "ruche/scene/write_scene.hpp"
+#include "ruche/study/calibration/campaign.hpp"
 
 namespace ruche {
 
 void add_template(CLI::App& program, Action& action) {
     const auto manual = std::make_shared<bool>(false);
+    const auto campaign = std::make_shared<bool>(false);
     CLI::App* verb =
         program.add_subcommand("template", "Print a scene file with every key, its default and meaning");
     verb->add_flag("--manual", *manual, "Print the same as a page of the manual (Markdown)");
-    verb->callback([manual, &action] {
-        action = [manual] {
-            fmt::print("{}", *manual ? scene_manual() : scene_template());
+    verb->add_flag("--campaign", *campaign,
+                   "Print every key of a campaign file of `ruche calibrate` (Markdown)")
+        ->excludes("--manual");
+    verb->callback([manual, campaign, &action] {
+        action = [manual, campaign] {
+            fmt::print("{}", *campaign ? campaign_manual() : *manual ? scene_manual() : scene_template());
             return ExitCode::converged;
         };
     });

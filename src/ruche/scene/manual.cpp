@@ -1,7 +1,7 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "ruche/core/document.hpp"
+#include "ruche/core/manual.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 #include "ruche/scene/write_scene.hpp"
 
@@ -18,16 +18,6 @@ static std::string wrapped(std::string_view text, std::string_view prefix, std::
         text.remove_prefix(length == text.size() ? length : length + 1);
     }
     return result;
-}
-
-static std::string admissible(const FieldInfo& about) {
-    if (about.kind == FieldKind::choice) return fmt::format("\"{}\"", fmt::join(about.names, "\" | \""));
-    return range_text(about);
-}
-
-static std::string written(const FieldInfo& about, const FieldValue& value) {
-    const bool text = about.kind == FieldKind::text || about.kind == FieldKind::choice;
-    return text ? toml_quoted(std::get<std::string>(value)) : to_string(value);
 }
 
 /// What each section is for, in the order of `for_each_section`.
@@ -88,29 +78,6 @@ std::string scene_template() {
     return text;
 }
 
-static std::string markdown_cell(std::string_view text) {
-    std::string cell;
-    for (const char c : text) cell += c == '|' ? std::string("\\|") : std::string(1, c);
-    return cell;
-}
-
-template <class Struct>
-static std::string rows(const Struct& s) {
-    std::string text;
-    for (const Field<Struct>& field : fields<Struct>()) {
-        const FieldInfo about = info(field);
-        text += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", field.key, written(about, get(s, field)),
-                            field.unit, markdown_cell(admissible(about)), markdown_cell(field.meaning));
-    }
-    return text;
-}
-
-static std::string heading(std::string_view title, std::string_view text) {
-    return fmt::format(
-        "\n## `{}`\n{}\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n", title,
-        text);
-}
-
 std::string scene_manual() {
     const Scene scene = example();
     std::string text =
@@ -122,18 +89,21 @@ std::string scene_manual() {
         "is\n"
         "printed by `ruche template --manual`.\n";
     for_each_section(scene, [&]<class Section>(const std::string& name, const Section& section) {
-        text += heading("[" + name + "]", purpose(name)) + rows(section);
+        text += manual_heading("[" + name + "]", purpose(name)) + manual_rows(section);
         if (name == "plastic")
-            text += heading("[[plastic.rule]]", "Which drawn shapes mean what.") + rows(PrintRule{});
+            text += manual_heading("[[plastic.rule]]", "Which drawn shapes mean what.") +
+                    manual_rows(PrintRule{});
     });
     for (const GeneratorInfo& generator : generators()) {
-        text += heading(fmt::format("[pattern.options] of {}", generator.name), generator.summary);
+        text += manual_heading(fmt::format("[pattern.options] of {}", generator.name), generator.summary);
         for (const GeneratorOption& option : generator.options)
             text += fmt::format("| `{}` | `{}` | {} | {} | {} |\n", option.key, option.initial, option.unit,
                                 markdown_cell(option.range), markdown_cell(option.meaning));
     }
-    text += heading("[[support]]", "Vertices that are held.") + rows(Selection{}) + rows(SupportOptions{});
-    text += heading("[[force]]", "Dead forces.") + rows(Selection{}) + rows(ForceOptions{});
+    text += manual_heading("[[support]]", "Vertices that are held.") + manual_rows(Selection{}) +
+            manual_rows(SupportOptions{});
+    text +=
+        manual_heading("[[force]]", "Dead forces.") + manual_rows(Selection{}) + manual_rows(ForceOptions{});
     return text;
 }
 

@@ -122,6 +122,13 @@ const Case cases[] = {
          if (i > 18 && i < 30) v[2] *= 0.5;
      }),
      "a grip slipped or a yarn broke", true},
+    {"a force that stands alone", on_rows([](auto& v, std::size_t i) {
+         if (i == 12) v[2] = 99.0;
+     }),
+     "0.csv:13: a force of 99 N stands alone", true},
+    {"a load cell that drifts",
+     on_rows([](auto& v, std::size_t i) { v[2] += 0.008 * static_cast<double>(i); }),
+     "when the clamp is back", true},
     {"force with the other sign", on_rows([](auto& v, std::size_t) { v[2] = -v[2]; }), "its sign was turned",
      true},
     {"orientation missing in the campaign",

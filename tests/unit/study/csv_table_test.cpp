@@ -6,6 +6,7 @@
 #include <string>
 
 #include "ruche/core/error.hpp"
+#include "ruche/study/calibration/csv_cells.hpp"
 #include "ruche/study/calibration/test_record.hpp"
 
 using namespace ruche;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "ruche/study/calibration/law_problem.hpp"
 #include "ruche/study/calibration/paper_fit.hpp"
 #include "synthetic_tests.hpp"
 
@@ -112,6 +113,20 @@ TEST_CASE("paper fit: exact data of eq. 12 give alpha~, beta, gamma and alpha ba
     }
 }
 
+TEST_CASE("paper fit: what one axis leaves open makes alpha of the other uncertain as well") {
+    const Material truth;
+    std::vector<LawCurve> curves = {exact_curve(truth, 0.0), exact_curve(truth, 90.0)};
+    add_noise(curves[1], 0.02, 11);
+    const PaperFit fit = fit_as_in_the_paper(curves, truth);
+    const auto width = [&](std::size_t i) { return fit.parameters[i].high - fit.parameters[i].low; };
+    // alpha_1 = (1 - nu^2) alpha~_1 + nu^2 sqrt(alpha_1 alpha_2), differentiated at a fixed alpha~_1.
+    const double nu = truth.fabric_poissons_ratio;
+    const double ratio = std::sqrt(fit.material.alpha_2 / fit.material.alpha_1);
+    const double by_other = 0.5 * nu * nu / ratio / (1.0 - 0.5 * nu * nu * ratio);
+    CHECK(width(0) > 0.9 * by_other * width(1));
+    CHECK(width(1) > 0.0);
+}
+
 TEST_CASE("alpha from alpha~: undoes its definition") {
     for (const double nu : {0.0, 0.3, -0.2, 0.6}) {
         const double a = 0.02;
@@ -173,6 +188,65 @@ TEST_CASE(
     }
     CHECK(open >= 1);
     CHECK_FALSE(fit.correlations.empty());
+}
+
+TEST_CASE(
+    "joint fit: where masses were hung the errors are those of the lengths, and intervals hold the truth") {
+    const Material truth;
+    int inside = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        std::vector<LawCurve> curves = curves_of(truth, 1.7, 12);
+        for (std::size_t i = 0; i < curves.size(); ++i) {
+            LawCurve& curve = curves[i];
+            curve.by_force = true;
+            // Lengths scatter by 1 % of the way, near the limit too, where stress says nothing of the
+            // stretch.
+            LawCurve lengths = curve;
+            lengths.nominal_stress = curve.stretch;
+            add_noise(lengths, 0.7 * 0.01 / 1.7, 50 * seed + i);
+            curve.stretch = lengths.nominal_stress;
+            curve.transverse = lengths.transverse;
+        }
+        const LawFit fit = fit_law(curves, {.start = truth, .fit_poisson = true});
+        CHECK(fit.converged);
+        for (const ParameterEstimate& p : fit.parameters) {
+            const double true_value = truth.*law_parameters[p.parameter];
+            inside += p.low <= true_value && true_value <= p.high ? 1 : 0;
+        }
+        for (const double rms : fit.rms) CHECK(rms < 0.03);
+    }
+    // 24 intervals of 95 %: fewer than 20 inside has a probability below 0.2 %.
+    CHECK(inside >= 20);
+}
+
+TEST_CASE("joint fit: derivatives of rows by force agree with extrapolated differences") {
+    const Material truth;
+    std::vector<LawCurve> curves = curves_of(truth, 1.65, 6);
+    for (LawCurve& curve : curves) curve.by_force = true;
+    const LawProblem law(curves, {.start = truth, .fit_poisson = true});
+    Eigen::VectorXd p(law.parameter_count());
+    for (int i = 0; i < law.parameter_count(); ++i) p[i] = 1.02 * truth.*law_parameters[law.parameter(i)];
+    Eigen::VectorXd r(law.problem().residual_count);
+    Eigen::MatrixXd jacobian(r.size(), p.size());
+    REQUIRE(law.problem().evaluate(p, r, &jacobian));
+    for (int i = 0; i < p.size(); ++i) {
+        CAPTURE(i);
+        const auto difference = [&](double step) -> Eigen::VectorXd {
+            Eigen::VectorXd up(r.size());
+            Eigen::VectorXd down(r.size());
+            Eigen::VectorXd at = p;
+            at[i] += step;
+            REQUIRE(law.problem().evaluate(at, up, nullptr));
+            at[i] -= 2.0 * step;
+            REQUIRE(law.problem().evaluate(at, down, nullptr));
+            return (up - down) / (2.0 * step);
+        };
+        const double step = 1e-3 * p[i];
+        const Eigen::VectorXd exact = jacobian.col(i);
+        const Eigen::VectorXd found = (4.0 * difference(0.5 * step) - difference(step)) / 3.0;
+        // The error of the fourth order of the differences, and rounding of Newton's end over the step.
+        CHECK((found - exact).norm() < 1e-6 * exact.norm());
+    }
 }
 
 TEST_CASE("joint fit: leaving one orientation out of exact data predicts it exactly") {

@@ -59,3 +59,19 @@ TEST_CASE(
         CHECK(value.interval->at(1) > c.truth);
     }
 }
+
+TEST_CASE("printed samples: what was measured beside them replaces the card's values") {
+    const test::TestFolder folder("printed-and-measured");
+    const std::string text = fmt::format(
+        "[fabric]\nareal_density_kg_per_m2 = 0.15\n[[printed]]\nlength_mm = 30\nwidth_mm = 1\nthickness_mm = "
+        "0.6\n"
+        "radius_mm = {}\n[[cantilever]]\nangle_deg = 0\nlength_mm = [40, 60]\nx_mm = [30, 28]\ny_mm = [22, "
+        "48]\n",
+        radius(0.6, &Material::fabric_thickness, 0.46));
+    const Calibration result = calibrate(parse_campaign(text, folder.write("printed.toml", text)));
+    const auto& values = result.card.sets.at(0).values;
+    CHECK(values.at("fabric_areal_density").value == 0.15);
+    CHECK(values.at("fabric_bending_stiffness").source.starts_with("measured"));
+    CHECK(values.at("alpha_1").source == "paper Table 1");
+    CHECK(values.at("fabric_thickness").value == doctest::Approx(0.46).epsilon(1e-3));
+}

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 
 #include "ruche/study/calibration/card_values.hpp"
 #include "ruche/study/calibration/grip_correction.hpp"
@@ -24,7 +25,8 @@ LawCurve law_curve(const TensionCurve& test) {
             .angle_deg = test.test.angle_deg,
             .stretch = test.stretch,
             .nominal_stress = test.nominal_stress,
-            .transverse = test.transverse};
+            .transverse = test.transverse,
+            .by_force = test.record.driven_by_force};
 }
 
 /// Fits one pre-stretch after the other.
@@ -36,7 +38,7 @@ class Calibrator {
     void run() {
         const CardValue& thickness = set_value(measured_values(result_), "fabric_thickness");
         thickness_ = thickness.value;
-        if (thickness.source.starts_with("assumed"))
+        if (thickness.source.starts_with("assumed") && !campaign_.tension.empty())
             result_.warnings.push_back(
                 "the fabric's thickness was not measured: stiffness per width is right, moduli and curvature "
                 "are not");
@@ -57,7 +59,7 @@ class Calibrator {
     void read_tests() {
         std::set<double> prestretches;
         for (const TensionTest& test : campaign_.tension) prestretches.insert(test.prestretch);
-        std::map<std::pair<std::string, int>, double> seen;
+        std::map<std::tuple<std::string, int, int>, double> seen;
         for (const double s : prestretches) {
             CalibratedSet set{.prestretch = s};
             for (const TensionTest& test : campaign_.tension) {
@@ -65,7 +67,8 @@ class Calibrator {
                 control_.say({"read", -1.0, test.file});
                 set.tests.push_back(read_tension_curve(test, thickness_));
                 append(result_.warnings, set.tests.back().warnings);
-                const auto [other, is_new] = seen.try_emplace({test.file, test.cycle}, test.angle_deg);
+                const auto [other, is_new] =
+                    seen.try_emplace({test.file, test.specimen, test.cycle}, test.angle_deg);
                 if (!is_new && other->second != test.angle_deg)
                     throw InputError(test.place, test.file + " is named for two orientations");
             }
@@ -84,6 +87,8 @@ class Calibrator {
                                           measured_values(result_).values.at("fabric_areal_density").value);
         warn_of_bending();
         if (!result_.shear.empty()) result_.shear_modulus = mean_slope_of(result_.shear);
+        if (campaign_.tension.empty() && !result_.shear.empty())
+            result_.warnings.push_back("shear tests without tension tests are drawn, but determine nothing");
     }
 
     void warn_of_bending() {
@@ -179,16 +184,23 @@ class Calibrator {
         LawFitOptions options{.start = start, .fit_poisson = fit_poisson, .intervals = false};
         control_.say({"fit", -1.0, fmt::format("pre-stretch {:g}: homogeneous law", set.prestretch)});
         set.fit = fit_law(set.curves, options);
-        constexpr int most_rounds = 6;
+        constexpr int most_rounds = 8;
+        constexpr double little = 0.02;  // of half an interval
+        double last_change = infinity;
         while (set.grip_rounds < most_rounds && has_grips(set)) {
-            const Material before = set.fit.material;
+            const LawFit before = set.fit;
             ++set.grip_rounds;
             control_.say({"fit", -1.0,
                           fmt::format("pre-stretch {:g}: simulating the clamped samples, round {}",
                                       set.prestretch, set.grip_rounds)});
-            correct_for_grips(set.curves, set.tests, before, campaign_.options.element_size_mm);
+            correct_for_grips(set.curves, set.tests, before.material, campaign_.options.element_size_mm);
             set.fit = fit_law(set.curves, options);
-            if (largest_change(before, set.fit.material) < 1e-3) break;
+            // Changes shrink by about the same factor each time: what all further rounds would change is
+            // known.
+            const double change = largest_change(before, set.fit);
+            const double factor = change / last_change;
+            last_change = change;
+            if (factor < 1.0 && set.grip_rounds > 1 && change * factor / (1.0 - factor) < little) break;
         }
         for (const LawCurve& curve : set.curves)
             for (const double ratio : curve.force_ratio)
@@ -204,10 +216,14 @@ class Calibrator {
         });
     }
 
-    static double largest_change(const Material& a, const Material& b) {
+    /// In units of half an interval, or of a thousandth of the value where the data are better than that.
+    static double largest_change(const LawFit& a, const LawFit& b) {
         double change = 0.0;
-        for (const auto member : law_parameters)
-            change = std::max(change, std::abs(a.*member - b.*member) / (std::abs(b.*member) + 1e-12));
+        for (std::size_t i = 0; i < a.parameters.size(); ++i) {
+            const ParameterEstimate& p = b.parameters[i];
+            const double wide = std::max(0.5 * (p.high - p.low), 1e-3 * std::abs(p.value) + 1e-12);
+            change = std::max(change, std::abs(p.value - a.parameters[i].value) / wide);
+        }
         return change;
     }
 
@@ -308,7 +324,7 @@ Calibration calibrate(const Campaign& campaign, const Control& control) {
     result.card.description = campaign.options.description;
     if (!campaign.plastic.thickness_mm.empty())
         result.card.printed_thickness = mean_of(campaign.plastic.thickness_mm, "measured");
-    if (!campaign.tension.empty()) Calibrator(result, control).run();
+    Calibrator(result, control).run();
     if (!campaign.printed.empty()) fit_printed_samples(result, control);
     result.card.warnings = result.warnings;
     return result;

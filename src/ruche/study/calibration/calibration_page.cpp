@@ -56,6 +56,9 @@ std::string values(const Calibration& c) {
             "<h2>Values at a pre-stretch of {:g}</h2>\n<table><tr><th>value</th><th></th><th>unit</th>"
             "<th>95 % interval</th><th>from</th></tr>\n{}</table>\n",
             set.prestretch, value_rows(set));
+    if (c.card.printed_thickness)
+        html += fmt::format("<p>Thickness of the print: {:.4g} mm, {}.</p>\n",
+                            c.card.printed_thickness->value, html_escaped(c.card.printed_thickness->source));
     return html;
 }
 

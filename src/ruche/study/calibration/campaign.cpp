@@ -22,15 +22,21 @@ std::vector<double> numbers_of(TableReader& reader, FieldInfo field) {
     return numbers;
 }
 
-void require(const TableReader& reader, std::initializer_list<std::string_view> keys) {
+/// Fields and lists of readings.
+template <class Struct>
+void read_all(TableReader& reader, Struct& s) {
+    reader.read(s);
+    for (const Readings<Struct>& list : readings<Struct>()) s.*list.values = numbers_of(reader, list.about);
+}
+
+void require(const TableReader& reader, std::span<const std::string_view> keys) {
     for (const std::string_view key : keys)
         if (!reader.has(key))
             throw InputError(reader.place_of_key(key), "missing",
                              "Every test says what was measured: this cannot be guessed.");
 }
 
-void require_file(TestFile& test, const std::string& folder, const TableReader& reader) {
-    require(reader, {"file"});
+void find_file(TestFile& test, const std::string& folder) {
     std::filesystem::path path(test.file);
     if (path.is_relative() && !folder.empty()) path = std::filesystem::path(folder) / path;
     test.file = path.lexically_normal().string();
@@ -75,19 +81,7 @@ class Reader {
         if (node == nullptr) return;
         TableReader reader(*node, "fabric");
         FabricMeasurements& f = campaign_.fabric;
-        reader.read(f);
-        f.thickness_mm = numbers_of(reader, {.key = "thickness_mm",
-                                             .low = 1e-3,
-                                             .high = 20,
-                                             .meaning = "Readings of the relaxed fabric's thickness."});
-        f.areal_density_kg_per_m2 = numbers_of(reader, {.key = "areal_density_kg_per_m2",
-                                                        .low = 1e-3,
-                                                        .high = 20,
-                                                        .meaning = "Mass per area of the relaxed fabric."});
-        f.sample_mass_g = numbers_of(reader, {.key = "sample_mass_g",
-                                              .low = 1e-6,
-                                              .high = 1e5,
-                                              .meaning = "Masses of pieces of sample_area_mm2."});
+        read_all(reader, f);
         reader.finish();
         if (!f.sample_mass_g.empty() && f.sample_area_mm2 <= 0.0)
             throw InputError(reader.place_of_key("sample_area_mm2"), "missing",
@@ -101,12 +95,7 @@ class Reader {
         const Node* node = root_.take_table("plastic");
         if (node == nullptr) return;
         TableReader reader(*node, "plastic");
-        reader.read(campaign_.plastic);
-        campaign_.plastic.thickness_mm =
-            numbers_of(reader, {.key = "thickness_mm",
-                                .low = 1e-3,
-                                .high = 20,
-                                .meaning = "Readings of the printed plastic's thickness."});
+        read_all(reader, campaign_.plastic);
         reader.finish();
     }
 
@@ -114,14 +103,14 @@ class Reader {
     TableReader begin(const Node& node, std::string_view name, std::size_t number, Test& test) {
         TableReader reader(node, fmt::format("{}.{}", name, number));
         test.place = place_of(node, fmt::format("{}.{}", name, number));
-        reader.read(test);
+        read_all(reader, test);
+        require(reader, required_keys<Test>());
         return reader;
     }
 
     /// What all tests with a file have in common.
-    void finish(TableReader& reader, TestFile& test, std::initializer_list<std::string_view> keys) const {
-        require(reader, keys);
-        require_file(test, folder_, reader);
+    void finish(TableReader& reader, TestFile& test) const {
+        find_file(test, folder_);
         test.columns = columns_;
         if (const Node* node = reader.take_table("columns")) {
             TableReader own(*node, reader.path_of("columns"));
@@ -135,7 +124,7 @@ class Reader {
         TensionTest test;
         test.prestretch = campaign_.options.prestretch;
         TableReader reader = begin(node, "tension", campaign_.tension.size() + 1, test);
-        finish(reader, test, {"file", "angle_deg", "length_mm", "width_mm"});
+        finish(reader, test);
         if (test.branch == Branch::unknown)
             throw InputError(reader.place_of_key("branch"), "expected \"unloading\" or \"loading\"");
         campaign_.tension.push_back(test);
@@ -144,27 +133,20 @@ class Reader {
     void read_shear(const Node& node) {
         ShearTest test;
         TableReader reader = begin(node, "shear", campaign_.shear.size() + 1, test);
-        finish(reader, test, {"file", "angle_deg", "height_mm", "width_mm"});
+        finish(reader, test);
         campaign_.shear.push_back(test);
     }
 
     void read_plastic_tension(const Node& node) {
         PlasticTest test;
         TableReader reader = begin(node, "plastic_tension", campaign_.plastic_tension.size() + 1, test);
-        finish(reader, test, {"file", "length_mm", "width_mm", "thickness_mm"});
+        finish(reader, test);
         campaign_.plastic_tension.push_back(test);
     }
 
     void read_cantilever(const Node& node) {
         CantileverTest test;
         TableReader reader = begin(node, "cantilever", campaign_.cantilever.size() + 1, test);
-        require(reader, {"length_mm", "x_mm", "y_mm"});
-        const auto lengths = [&](std::string_view key, std::string_view meaning) {
-            return numbers_of(reader, {.key = key, .low = 0.01, .high = 1e4, .meaning = meaning});
-        };
-        test.length_mm = lengths("length_mm", "Length of the strip that hangs over.");
-        test.x_mm = lengths("x_mm", "Horizontal distance of the tip from the clamp.");
-        test.y_mm = lengths("y_mm", "How far the tip hangs below the clamp.");
         reader.finish();
         if (test.side != "front" && test.side != "back")
             throw InputError(reader.place_of_key("side"),
@@ -189,9 +171,9 @@ class Reader {
     void read_printed(const Node& node) {
         PrintedSample sample{.prestretch = campaign_.options.prestretch};
         TableReader reader = begin(node, "printed", campaign_.printed.size() + 1, sample);
-        require(reader, {"radius_mm"});
         if (sample.scene.empty()) {
-            require(reader, {"length_mm", "width_mm", "thickness_mm"});
+            static constexpr std::string_view keys[] = {"length_mm", "width_mm", "thickness_mm"};
+            require(reader, keys);
         } else if (!folder_.empty() && std::filesystem::path(sample.scene).is_relative()) {
             sample.scene = (std::filesystem::path(folder_) / sample.scene).lexically_normal().string();
         }

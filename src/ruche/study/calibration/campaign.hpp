@@ -47,6 +47,7 @@ struct PlasticMeasurements {
 /// What all tests with a file have in common.
 struct TestFile {
     std::string file;  ///< seen from the program's working folder
+    int specimen = 0;  ///< which of the file's, from 1; 0: it has one only
     ColumnOptions columns;
     Place place;  ///< of its table in the campaign
 };
@@ -130,6 +131,39 @@ std::span<const Field<PrintedSample>> fields<PrintedSample>();
 template <>
 std::span<const Field<PrintedFitOptions>> fields<PrintedFitOptions>();
 
+/// A key that takes a number or a list of readings, beside the fields of a struct.
+template <class Struct>
+struct Readings {
+    FieldInfo about;
+    std::vector<double> Struct::*values;
+};
+template <class Struct>
+std::span<const Readings<Struct>> readings() {
+    return {};
+}
+template <>
+std::span<const Readings<FabricMeasurements>> readings<FabricMeasurements>();
+template <>
+std::span<const Readings<PlasticMeasurements>> readings<PlasticMeasurements>();
+template <>
+std::span<const Readings<CantileverTest>> readings<CantileverTest>();
+
+/// Keys that a table of the campaign cannot do without.
+template <class Struct>
+std::span<const std::string_view> required_keys() {
+    return {};
+}
+template <>
+std::span<const std::string_view> required_keys<TensionTest>();
+template <>
+std::span<const std::string_view> required_keys<ShearTest>();
+template <>
+std::span<const std::string_view> required_keys<PlasticTest>();
+template <>
+std::span<const std::string_view> required_keys<CantileverTest>();
+template <>
+std::span<const std::string_view> required_keys<PrintedSample>();
+
 /// What was measured, and how: the file that `ruche calibrate` reads.
 struct Campaign {
     std::string file;
@@ -148,5 +182,8 @@ struct Campaign {
 Campaign read_campaign(const std::string& path);
 /// The same from text; `file` is named in messages, and paths are relative to its folder.
 Campaign parse_campaign(const std::string& text, const std::string& file);
+
+/// The page of the manual with every key of a campaign file (Markdown).
+std::string campaign_manual();
 
 }  // namespace ruche

@@ -11,6 +11,9 @@ constexpr std::string_view branch_names[] = {"unknown", "loading", "unloading"};
 constexpr std::string_view printed_parameters[] = {"fabric_thickness", "fabric_youngs_modulus",
                                                    "plastic_youngs_modulus"};
 constexpr double most_mm = 1e4;
+constexpr std::string_view specimen_meaning =
+    "Which specimen of a file that has several, one below the other or side by side, from 1; 0: there is "
+    "one.";
 
 }  // namespace
 
@@ -74,6 +77,7 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
     using T = TensionTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"angle_deg", &T::angle_deg, "deg", -180, 180, "Angle of the pull from the fabric's first axis."},
         {"length_mm", &T::length_mm, "mm", 1, most_mm, "Relaxed length between the clamps (or the marks)."},
         {"width_mm", &T::width_mm, "mm", 0.5, most_mm, "Relaxed width of the sample."},
@@ -103,6 +107,7 @@ std::span<const Field<ShearTest>> fields<ShearTest>() {
     using T = ShearTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"angle_deg", &T::angle_deg, "deg", -180, 180,
          "Angle from the fabric's first axis to the direction from clamp to clamp."},
         {"height_mm", &T::height_mm, "mm", 1, most_mm, "Distance of the two clamps."},
@@ -128,6 +133,7 @@ std::span<const Field<PlasticTest>> fields<PlasticTest>() {
     using T = PlasticTest;
     static const Field<T> table[] = {
         {"file", &T::file, "", -infinity, infinity, "File of the test, relative to the campaign's folder."},
+        {"specimen", &T::specimen, "", 0, 10000, specimen_meaning},
         {"length_mm", &T::length_mm, "mm", 1, most_mm, "Length between the clamps (or the marks)."},
         {"width_mm", &T::width_mm, "mm", 0.1, most_mm, "Width of the strip."},
         {"thickness_mm", &T::thickness_mm, "mm", 0.01, 100, "Thickness of the strip as measured."},
@@ -165,6 +171,73 @@ std::span<const Field<PrintedFitOptions>> fields<PrintedFitOptions>() {
          "Card of the values that no test of this campaign determines."},
     };
     return table;
+}
+
+template <>
+std::span<const Readings<FabricMeasurements>> readings<FabricMeasurements>() {
+    using F = FabricMeasurements;
+    static const Readings<F> table[] = {
+        {{"thickness_mm", "mm", 1e-3, 20,
+          "Readings of the relaxed fabric's thickness; else 0.46 mm is assumed."},
+         &F::thickness_mm},
+        {{"areal_density_kg_per_m2", "kg/m^2", 1e-3, 20, "Mass per area of the relaxed fabric."},
+         &F::areal_density_kg_per_m2},
+        {{"sample_mass_g", "g", 1e-6, 1e5, "Instead of it: masses of pieces of sample_area_mm2."},
+         &F::sample_mass_g},
+    };
+    return table;
+}
+
+template <>
+std::span<const Readings<PlasticMeasurements>> readings<PlasticMeasurements>() {
+    using P = PlasticMeasurements;
+    static const Readings<P> table[] = {
+        {{"thickness_mm", "mm", 1e-3, 20, "Readings of the printed plastic's thickness, for the record."},
+         &P::thickness_mm},
+    };
+    return table;
+}
+
+template <>
+std::span<const Readings<CantileverTest>> readings<CantileverTest>() {
+    using C = CantileverTest;
+    static const Readings<C> table[] = {
+        {{"length_mm", "mm", 0.01, most_mm, "Lengths of the strip that hang over."}, &C::length_mm},
+        {{"x_mm", "mm", 0.01, most_mm, "For each, the horizontal distance of the tip from the edge."},
+         &C::x_mm},
+        {{"y_mm", "mm", 0.01, most_mm, "For each, how far the tip hangs below the edge."}, &C::y_mm},
+    };
+    return table;
+}
+
+template <>
+std::span<const std::string_view> required_keys<TensionTest>() {
+    static constexpr std::string_view keys[] = {"file", "angle_deg", "length_mm", "width_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<ShearTest>() {
+    static constexpr std::string_view keys[] = {"file", "angle_deg", "height_mm", "width_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<PlasticTest>() {
+    static constexpr std::string_view keys[] = {"file", "length_mm", "width_mm", "thickness_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<CantileverTest>() {
+    static constexpr std::string_view keys[] = {"length_mm", "x_mm", "y_mm"};
+    return keys;
+}
+
+template <>
+std::span<const std::string_view> required_keys<PrintedSample>() {
+    static constexpr std::string_view keys[] = {"radius_mm"};
+    return keys;
 }
 
 }  // namespace ruche

@@ -170,8 +170,12 @@ static std::string correlated_with(const LawFit& fit, std::size_t parameter) {
 void add_law_values(CardSet& set, const Calibration& c, const CalibratedSet& fitted) {
     const bool joint = c.campaign.options.mode == FitMode::joint;
     const std::vector<std::string> files = files_of(fitted.tests);
-    const std::string source = joint ? fmt::format("fitted to {} tension tests at once", fitted.tests.size())
-                                     : "fitted axis by axis as the paper does (eq. 12 with 1/(1 - nu^2))";
+    double reached = 1.0;
+    for (const TensionCurve& test : fitted.tests) reached = std::max(reached, test.largest_stretch());
+    const std::string source =
+        (joint ? fmt::format("fitted to {} tension tests at once", fitted.tests.size())
+               : "fitted axis by axis as the paper does (eq. 12 with 1/(1 - nu^2))") +
+        fmt::format("; uniaxial stretches up to {:.3f} for use at {:g}", reached, fitted.prestretch);
     for (const ParameterEstimate& p : fitted.fit.parameters) {
         CardValue value{p.value, source, {}, files};
         value.interval = std::array{p.low, p.high};

@@ -11,8 +11,8 @@ namespace {
 using Names = std::span<const std::string_view>;
 
 constexpr std::string_view force_names[] = {
-    "load",  "force",  "standard force", "standardkraft", "kraft",     "carga", "fuerza",
-    "forza", "charge", "effort",         "carico",        "prüfkraft", "last",  "f"};
+    "load",   "force",  "standard force", "standardkraft", "kraft", "carga",     "fuerza", "forza",
+    "charge", "effort", "carico",         "prüfkraft",     "last",  "load cell", "f"};
 constexpr std::string_view displacement_names[] = {"extension",
                                                    "displacement",
                                                    "standard travel",
@@ -22,6 +22,7 @@ constexpr std::string_view displacement_names[] = {"extension",
                                                    "verschiebung",
                                                    "crosshead",
                                                    "travel",
+                                                   "stroke",
                                                    "elongation",
                                                    "verlängerung",
                                                    "allongement",
@@ -30,12 +31,25 @@ constexpr std::string_view displacement_names[] = {"extension",
                                                    "alargamiento",
                                                    "spostamento",
                                                    "allungamento",
+                                                   "position",
+                                                   "distance",
+                                                   "abstand",
+                                                   "längenänderung",
+                                                   "course",
                                                    "dehnung",
                                                    "strain",
                                                    "deformation",
+                                                   "déformation",
+                                                   "deformación",
+                                                   "deformazione",
                                                    "d",
                                                    "dl",
                                                    "Δl"};
+constexpr std::string_view strain_names[] = {"strain",      "dehnung",     "deformation",
+                                             "déformation", "deformación", "deformazione"};
+// Not the quantity itself but a rate, its largest value, what is derived from it.
+constexpr std::string_view other_words[] = {"rate", "speed", "max", "vitesse", "stress", "spannung", "energ"};
+constexpr std::string_view change_words[] = {"änderung", "change", "reduction", "verringerung"};
 constexpr std::string_view width_names[] = {"width", "breite", "largeur", "ancho", "larghezza", "w"};
 constexpr std::string_view branch_names[] = {"branch", "direction", "richtung", "phase", "sens"};
 constexpr std::string_view mass_names[] = {"mass",    "hung mass", "masse", "weight",
@@ -60,15 +74,6 @@ Names names_of(Quantity quantity) {
     return {};
 }
 
-/// The name without a unit in brackets or behind "in" or "/".
-std::string bare(std::string_view name) {
-    std::string text = folded(name);
-    for (const std::string_view mark : {"(", "[", " in ", " / ", "_in_"})
-        text = text.substr(0, text.find(mark));
-    for (char& c : text) c = c == '_' || c == '-' ? ' ' : c;
-    return folded(text);
-}
-
 struct Unit {
     std::string_view name;
     UnitScale scale;
@@ -80,14 +85,21 @@ constexpr Unit force_units[] = {{"n", {1.0}},
                                 {"mn", {1e-3}},
                                 {"cn", {1e-2}},
                                 {"dan", {10.0}},
+                                {"newton", {1.0}},
+                                {"newtons", {1.0}},
                                 {"gf", {1e-3 * standard_gravity}},
                                 {"g", {1e-3 * standard_gravity}},
                                 {"kgf", {standard_gravity}},
                                 {"kp", {standard_gravity}},
+                                {"ozf", {0.27801385095378}},
+                                {"lb", {4.4482216152605}},
+                                {"lbs", {4.4482216152605}},
                                 {"lbf", {4.4482216152605}}};
-constexpr Unit length_units[] = {{"mm", {1.0}},       {"cm", {10.0}},         {"m", {1e3}},
-                                 {"µm", {1e-3}},      {"um", {1e-3}},         {"in", {25.4}},
-                                 {"%", {1e-2, true}}, {"mm/mm", {1.0, true}}, {"-", {1.0, true}}};
+constexpr Unit length_units[] = {
+    {"mm", {1.0}},          {"cm", {10.0}},         {"m", {1e3}},           {"µm", {1e-3}},
+    {"um", {1e-3}},         {"in", {25.4}},         {"inch", {25.4}},       {"inches", {25.4}},
+    {"millimeter", {1.0}},  {"millimeters", {1.0}}, {"%", {1e-2, true}},    {"percent", {1e-2, true}},
+    {"mm/mm", {1.0, true}}, {"m/m", {1.0, true}},   {"in/in", {1.0, true}}, {"-", {1.0, true}}};
 constexpr Unit mass_units[] = {{"g", {1e-3 * standard_gravity}}, {"kg", {standard_gravity}}};
 
 std::span<const Unit> units_of(Quantity quantity) {
@@ -106,7 +118,57 @@ std::span<const Unit> units_of(Quantity quantity) {
     return {};
 }
 
+/// "n" of "(N)".
+std::string without_brackets(std::string_view unit) {
+    std::string text = folded(unit);
+    while (!text.empty() && (text.front() == '(' || text.front() == '[' || text.front() == '<'))
+        text.erase(0, 1);
+    while (!text.empty() && (text.back() == ')' || text.back() == ']' || text.back() == '>')) text.pop_back();
+    return folded(text);
+}
+
+constexpr std::string_view time_units[] = {"s",  "sec", "sec.", "secs",    "seconds",
+                                           "ms", "min", "h",    "hh:mm:ss"};
+constexpr std::string_view unit_marks[] = {" in ", " / ", ", ", " ", "_", "/"};
+
+/// Where the unit behind a mark begins, "Kraft in N", "Kraft, N", "F/N", "width_mm"; npos without.
+std::size_t marked_unit(const std::string& text, std::size_t& mark_at) {
+    for (const std::string_view mark : unit_marks) {
+        mark_at = mark == "/" ? text.find(mark) : text.rfind(mark);
+        if (mark_at == std::string::npos) continue;
+        // "width_mm" has a unit, "machine_force" has none.
+        const std::size_t begin = mark_at + mark.size();
+        if (is_unit(std::string_view(text).substr(begin))) return begin;
+    }
+    return std::string::npos;
+}
+
+/// The name without its unit.
+std::string bare(std::string_view name) {
+    std::string text = folded(name);
+    for (const char bracket : {'(', '['}) text = text.substr(0, text.find(bracket));
+    text = folded(text);
+    std::size_t mark = 0;
+    if (marked_unit(text, mark) != std::string::npos) text = text.substr(0, mark);
+    for (char& c : text) c = c == '_' || c == '-' ? ' ' : c;
+    return folded(text);
+}
+
 }  // namespace
+
+bool is_unit(std::string_view cell) {
+    if (folded(cell).empty()) return false;
+    for (const Quantity q : {Quantity::force, Quantity::displacement, Quantity::mass})
+        if (unit_scale(q, cell)) return true;
+    const std::string text = without_brackets(cell);
+    return std::find(std::begin(time_units), std::end(time_units), text) != std::end(time_units);
+}
+
+bool names_strain(std::string_view name) {
+    const std::string text = bare(name);
+    return std::any_of(std::begin(strain_names), std::end(strain_names),
+                       [&](std::string_view word) { return text.find(word) != std::string::npos; });
+}
 
 std::string_view quantity_name(Quantity quantity) {
     constexpr std::array<std::string_view, 6> names = {"force",  "displacement", "width",
@@ -132,6 +194,10 @@ std::string folded(std::string_view text) {
 int name_score(Quantity quantity, std::string_view name) {
     const std::string text = bare(name);
     if (text.empty()) return 0;
+    for (const std::string_view word : other_words)
+        if (text.find(word) != std::string::npos) return 0;
+    for (const std::string_view word : change_words)
+        if (quantity == Quantity::width && text.find(word) != std::string::npos) return 0;
     int best = 0;
     int rank = 100;
     for (const std::string_view known : names_of(quantity)) {
@@ -155,22 +221,13 @@ std::string unit_in_name(std::string_view name) {
         if (end != std::string::npos && begin != std::string::npos && begin < end)
             return folded(std::string_view(text).substr(begin + 1, end - begin - 1));
     }
-    for (const std::string_view mark : {" in ", " / ", "_"}) {
-        const std::size_t at = text.rfind(mark);
-        if (at == std::string::npos) continue;
-        // "width_mm" has a unit, "machine_force" has none.
-        std::string unit = folded(std::string_view(text).substr(at + mark.size()));
-        for (const Quantity q : {Quantity::force, Quantity::displacement, Quantity::mass})
-            if (unit_scale(q, unit)) return unit;
-    }
-    return {};
+    std::size_t mark = 0;
+    const std::size_t begin = marked_unit(text, mark);
+    return begin == std::string::npos ? std::string() : folded(std::string_view(text).substr(begin));
 }
 
 std::optional<UnitScale> unit_scale(Quantity quantity, std::string_view unit) {
-    std::string text = folded(unit);
-    while (!text.empty() && (text.front() == '(' || text.front() == '[')) text.erase(0, 1);
-    while (!text.empty() && (text.back() == ')' || text.back() == ']')) text.pop_back();
-    text = folded(text);
+    const std::string text = without_brackets(unit);
     if (quantity == Quantity::force && unit.find("MN") != std::string_view::npos) return std::nullopt;
     for (const Unit& known : units_of(quantity))
         if (text == known.name) return known.scale;

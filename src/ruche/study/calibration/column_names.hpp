@@ -26,6 +26,12 @@ struct UnitScale {
 /// Nothing when it is no unit of that quantity.
 std::optional<UnitScale> unit_scale(Quantity quantity, std::string_view unit);
 
+/// Whether a cell, in brackets or not, is a unit of any quantity or of time.
+bool is_unit(std::string_view cell);
+
+/// Whether the name is that of a strain, whose unit cannot be guessed.
+bool names_strain(std::string_view name);
+
 /// Lower case for ASCII and the Latin letters of UTF-8, outer blanks and quotes off.
 std::string folded(std::string_view text);
 

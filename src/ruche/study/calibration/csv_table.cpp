@@ -3,70 +3,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdint>
-#include <limits>
 #include <map>
 
 #include "ruche/core/document.hpp"
 #include "ruche/core/text_scan.hpp"
+#include "ruche/study/calibration/column_names.hpp"
+#include "ruche/study/calibration/csv_cells.hpp"
+#include "ruche/study/calibration/csv_text.hpp"
 
 namespace ruche {
 namespace {
 
-constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
-        text.remove_suffix(1);
-    return text;
-}
-
-/// Cells of a line; quotes hold delimiters, a doubled quote is one.
-std::vector<std::string> split(std::string_view line, char delimiter) {
-    std::vector<std::string> cells;
-    if (delimiter == ' ') {
-        while (true) {
-            const std::string_view word = take_word(line);
-            if (word.empty()) return cells;
-            cells.emplace_back(word);
-        }
-    }
-    std::string cell;
-    bool quoted = false;
-    for (std::size_t i = 0; i < line.size(); ++i) {
-        const char c = line[i];
-        if (c == '"') {
-            if (quoted && i + 1 < line.size() && line[i + 1] == '"') {
-                cell += c;
-                ++i;
-            } else {
-                quoted = !quoted;
-            }
-        } else if (c == delimiter && !quoted) {
-            cells.emplace_back(trimmed(cell));
-            cell.clear();
-        } else {
-            cell += c;
-        }
-    }
-    cells.emplace_back(trimmed(cell));
-    // A delimiter at the end of every line makes no column.
-    if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
-    return cells;
-}
-
-bool has_digit(std::string_view text) {
-    return std::any_of(text.begin(), text.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
 struct Line {
     int number;
     std::string_view text;
+    bool remark = false;   ///< began with '#'
+    bool numbers = false;  ///< a row of the table
 };
+
+/// Lines that hold anything.
+std::vector<Line> lines_of(std::string_view text) {
+    std::vector<Line> lines;
+    TextScan scan(text);
+    while (!scan.at_end()) {
+        std::string_view line = trimmed(scan.take_line());
+        const bool remark = line.starts_with('#');
+        if (remark) line = trimmed(line.substr(1));
+        if (line.find_first_not_of(" \t,;|\"") == std::string_view::npos) continue;
+        lines.push_back({scan.line(), line, remark});
+    }
+    return lines;
+}
 
 /// How a file may be written, and how well its lines fit to that.
 struct Dialect {
@@ -76,25 +44,31 @@ struct Dialect {
     double score = 0.0;
 };
 
-/// Numbers in a row of numbers; 0 when it is none: fewer than two, or a cell with digits that is no number.
-std::size_t numbers_in(const std::vector<std::string>& cells, char decimal) {
-    std::size_t numbers = 0;
+/// What a row of at least two numbers is worth; 0 when it is none: a cell with digits is neither a number nor
+/// a time nor a word.
+double worth_of(const std::vector<std::string>& cells, char decimal) {
+    int numbers = 0;
+    double doubts = 0.0;
     for (const std::string& cell : cells) {
-        if (!std::isnan(cell_number(cell, decimal)))
+        if (!std::isnan(cell_number(cell, decimal))) {
             ++numbers;
-        else if (has_digit(cell))
-            return 0;
+            if (is_grouped(cell, decimal)) doubts += 0.5;
+        } else if (has_digit(cell) && !is_clock(cell)) {
+            if (!has_letter(cell) || cell.find_first_of(";\t|") != std::string::npos) return 0.0;
+            doubts += 0.5;
+        }
     }
-    return numbers >= 2 ? numbers : 0;
+    return numbers >= 2 ? 1.0 + 1e-3 * (numbers - doubts) : 0.0;
 }
 
 void rate(Dialect& dialect, const std::vector<Line>& lines) {
     std::map<std::size_t, double> rows_by_columns;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / 500);
     for (std::size_t i = 0; i < lines.size(); i += stride) {
+        if (lines[i].remark) continue;
         const std::vector<std::string> cells = split(lines[i].text, dialect.delimiter);
-        const std::size_t numbers = numbers_in(cells, dialect.decimal);
-        if (numbers > 0) rows_by_columns[cells.size()] += 1.0 + 1e-3 * static_cast<double>(numbers);
+        const double worth = worth_of(cells, dialect.decimal);
+        if (worth > 0.0) rows_by_columns[cells.size()] += worth;
     }
     for (const auto& [columns, score] : rows_by_columns) {
         if (score <= dialect.score) continue;
@@ -103,130 +77,7 @@ void rate(Dialect& dialect, const std::vector<Line>& lines) {
     }
 }
 
-bool unit_like(std::string_view cell) {
-    return cell.size() <= 12 && !has_digit(cell) &&
-           (cell.empty() || cell.front() == '(' || cell.front() == '[' || cell.size() <= 5);
-}
-
-/// Names, and units below them, from the lines right above the first row of numbers.
-void take_header(CsvTable& table, const std::vector<Line>& lines, std::size_t first) {
-    std::vector<std::pair<int, std::vector<std::string>>> above;
-    for (std::size_t i = first; i > 0 && above.size() < 3; --i) {
-        std::vector<std::string> cells = split(lines[i - 1].text, table.delimiter);
-        if (cells.size() + 1 < table.column_count() || cells.size() > table.column_count() + 1) break;
-        if (cells.size() < 2) break;
-        cells.resize(table.column_count());
-        above.emplace_back(lines[i - 1].number, std::move(cells));
-    }
-    if (above.empty()) return;
-    std::size_t names = 0;
-    const auto& nearest = above.front().second;
-    const bool units = std::all_of(nearest.begin(), nearest.end(), unit_like) &&
-                       std::any_of(nearest.begin(), nearest.end(), [](auto& c) { return !c.empty(); });
-    if (units && above.size() > 1) {
-        table.units = nearest;
-        names = 1;
-    }
-    table.header_line = above[names].first;
-    table.names = above[names].second;
-}
-
-std::vector<Line> lines_of(std::string_view text) {
-    std::vector<Line> lines;
-    TextScan scan(text);
-    while (!scan.at_end()) {
-        const std::string_view line = trimmed(scan.take_line());
-        if (!line.empty() && line.front() != '#') lines.push_back({scan.line(), line});
-    }
-    return lines;
-}
-
-void append_utf8(std::string& text, std::uint32_t code) {
-    if (code < 0x80U) {
-        text += static_cast<char>(code);
-    } else if (code < 0x800U) {
-        text += static_cast<char>(0xC0U | code >> 6U);
-        text += static_cast<char>(0x80U | (code & 0x3FU));
-    } else {
-        text += static_cast<char>(0xE0U | code >> 12U);
-        text += static_cast<char>(0x80U | (code >> 6U & 0x3FU));
-        text += static_cast<char>(0x80U | (code & 0x3FU));
-    }
-}
-
-/// Machines write nothing beyond the first plane of Unicode; a surrogate becomes a replacement character.
-std::string from_utf16(std::string_view bytes, bool big_endian) {
-    std::string text;
-    for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
-        const auto a = static_cast<unsigned char>(bytes[i]);
-        const auto b = static_cast<unsigned char>(bytes[i + 1]);
-        const std::uint32_t code = big_endian ? 256U * a + b : 256U * b + a;
-        append_utf8(text, code >= 0xD800U && code < 0xE000U ? 0xFFFDU : code);
-    }
-    return text;
-}
-
-bool is_utf8(std::string_view bytes) {
-    std::size_t follow = 0;
-    for (const char c : bytes) {
-        const auto byte = static_cast<unsigned char>(c);
-        if (follow > 0) {
-            if ((byte & 0xC0U) != 0x80U) return false;
-            --follow;
-        } else if (byte >= 0x80U) {
-            if (byte < 0xC2U || byte > 0xF4U) return false;
-            follow = byte < 0xE0U ? 1 : byte < 0xF0U ? 2 : 3;
-        }
-    }
-    return follow == 0;
-}
-
-}  // namespace
-
-double cell_number(std::string_view cell, char decimal) {
-    cell = trimmed(cell);
-    if (cell.starts_with('+')) cell.remove_prefix(1);
-    if (cell.empty() || cell.size() > 40) return no_number;
-    std::array<char, 48> plain{};
-    std::size_t size = 0;
-    const char thousands = decimal == '.' ? ',' : '.';
-    const std::size_t mark = cell.find(decimal);
-    for (std::size_t i = 0; i < cell.size(); ++i) {
-        if (cell[i] == decimal) {
-            plain[size++] = '.';
-        } else if (cell[i] == thousands) {
-            // Groups of three digits before the decimal mark, with a digit before and three behind each.
-            const std::size_t end = mark == std::string_view::npos ? cell.size() : mark;
-            if (i == 0 || i > end || (end - i) % 4 != 0) return no_number;
-        } else {
-            plain[size++] = cell[i];
-        }
-    }
-    const char first = plain[0] == '-' ? plain[1] : plain[0];
-    if (!((first >= '0' && first <= '9') || first == '.')) return no_number;  // "inf", "nan"
-    double number = 0.0;
-    const auto [stop, error] = std::from_chars(plain.data(), plain.data() + size, number);
-    return error == std::errc() && stop == plain.data() + size ? number : no_number;
-}
-
-std::string text_of(std::string_view bytes, const std::string& file) {
-    if (bytes.starts_with("\xFF\xFE")) return from_utf16(bytes, false);
-    if (bytes.starts_with("\xFE\xFF")) return from_utf16(bytes, true);
-    if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
-    if (bytes.find('\0') != std::string_view::npos)
-        throw InputError({.file = file}, "is a binary file, expected a table as text",
-                         "Export the test as CSV or text; spreadsheets (xls, xlsx) cannot be read.");
-    if (is_utf8(bytes)) return std::string(bytes);
-    std::string text;
-    for (const char c : bytes) append_utf8(text, static_cast<unsigned char>(c));
-    return text;
-}
-
-CsvTable parse_csv(std::string_view bytes, const std::string& file) {
-    std::string text = text_of(bytes, file);
-    // Old Macs end lines with a carriage return alone.
-    if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
-    const std::vector<Line> lines = lines_of(text);
+Dialect dialect_of(const std::vector<Line>& lines, const std::string& file) {
     Dialect best{' ', '.'};
     for (const char delimiter : {';', '\t', ',', '|', ' '}) {
         for (const char decimal : {'.', ','}) {
@@ -240,33 +91,194 @@ CsvTable parse_csv(std::string_view bytes, const std::string& file) {
                          lines.empty() ? "is empty" : "has no table of numbers with at least two columns",
                          "Expected are rows of numbers (force and displacement at least), parted by commas, "
                          "semicolons, tabs or blanks.");
-    CsvTable table{.file = file, .delimiter = best.delimiter, .decimal = best.decimal};
-    std::size_t first = 0;
-    bool found = false;
-    const auto numbers = [&](std::size_t i) {
-        if (i >= lines.size()) return false;
-        const std::vector<std::string> cells = split(lines[i].text, best.delimiter);
-        return cells.size() == best.columns && numbers_in(cells, best.decimal) > 0;
-    };
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        // A single row of numbers among the remarks above the table is not its first row.
-        if (!found && numbers(i) && (numbers(i + 1) || i + 1 == lines.size())) {
-            found = true;
-            first = i;
-        }
-        if (found) table.rows.push_back({lines[i].number, split(lines[i].text, best.delimiter)});
+    return best;
+}
+
+struct Header {
+    std::vector<std::string> names, units;
+    int line = 0;
+    std::size_t top = 0;  ///< index of its first line
+};
+
+/// Cells of a line of names; where blanks part the columns, "Load (N)" is one name.
+std::vector<std::string> name_cells(std::string_view line, char delimiter) {
+    std::vector<std::string> cells;
+    for (std::string& cell : split(line, delimiter)) {
+        const bool unit = delimiter == ' ' && !cells.empty() && (cell[0] == '(' || cell[0] == '[');
+        if (unit)
+            cells.back() += " " + cell;
+        else
+            cells.push_back(std::move(cell));
     }
-    if (!found)
+    return cells;
+}
+
+bool is_row_of_units(const std::vector<std::string>& cells) {
+    constexpr std::size_t longest = 12;
+    return std::any_of(cells.begin(), cells.end(), is_unit) &&
+           std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+               return cell.size() <= longest && (!has_digit(cell) || cell.find('/') != std::string::npos);
+           });
+}
+
+/// Names, and units below them, from the lines above the row of numbers `first`.
+Header header_above(const std::vector<Line>& lines, std::size_t first, const Dialect& dialect, bool remarks) {
+    std::vector<std::pair<std::size_t, std::vector<std::string>>> above;
+    for (std::size_t i = first; i > 0 && above.size() < 3 && !lines[i - 1].numbers; --i) {
+        if (lines[i - 1].remark && !remarks) continue;
+        std::vector<std::string> cells = name_cells(lines[i - 1].text, dialect.delimiter);
+        if (cells.size() + 1 < dialect.columns || cells.size() > dialect.columns + 1 || cells.size() < 2)
+            break;
+        cells.resize(dialect.columns);
+        above.emplace_back(i - 1, std::move(cells));
+    }
+    Header header{.top = first};
+    if (above.empty()) return header;
+    std::size_t names = 0;
+    if (above.size() > 1 && is_row_of_units(above.front().second)) {
+        header.units = above.front().second;
+        names = 1;
+    }
+    header.top = above[names].first;
+    header.line = lines[header.top].number;
+    header.names = above[names].second;
+    return header;
+}
+
+Header header_above(const std::vector<Line>& lines, std::size_t first, const Dialect& dialect) {
+    Header header = header_above(lines, first, dialect, false);
+    return header.names.empty() ? header_above(lines, first, dialect, true) : header;
+}
+
+/// Lines [first, end) and what stands above them.
+struct Section {
+    Header header;
+    std::size_t first = 0, end = 0;
+    std::size_t rows() const { return end - first; }
+};
+
+bool names_a_test(const std::vector<std::string>& names) {
+    const auto any = [&](Quantity a, Quantity b) {
+        return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
+            return name_score(a, name) > 0 || name_score(b, name) > 0;
+        });
+    };
+    return any(Quantity::force, Quantity::mass) && any(Quantity::displacement, Quantity::length);
+}
+
+/// Words, and not twice the same ("NaN,NaN,NaN").
+bool are_names(std::vector<std::string> names) {
+    if (std::any_of(names.begin(), names.end(), has_digit)) return false;
+    std::sort(names.begin(), names.end());
+    return std::adjacent_find(names.begin(), names.end()) == names.end();
+}
+
+constexpr std::size_t fewest_rows = 6;  // of a test
+
+std::vector<Section> sections_of(const std::vector<Line>& lines, const Dialect& dialect) {
+    std::vector<Section> sections;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        if (!lines[i].numbers || (i > 0 && lines[i - 1].numbers && !sections.empty())) continue;
+        // A single row of numbers among the remarks above the table is not its first row.
+        if (sections.empty() && i + 1 < lines.size() && !lines[i + 1].numbers) continue;
+        Section next{header_above(lines, i, dialect), i, lines.size()};
+        if (!sections.empty()) {
+            Section& last = sections.back();
+            const std::vector<std::string>& names = next.header.names;
+            const bool few_before = i - last.first < fewest_rows && are_names(names);
+            const bool begins =
+                !names.empty() && (names == last.header.names || names_a_test(names) || few_before);
+            if (!begins) continue;
+            last.end = next.header.top;
+        }
+        sections.push_back(std::move(next));
+    }
+    for (Section& section : sections)
+        while (section.end > section.first + 1 && !has_digit(lines[section.end - 1].text)) --section.end;
+    // Tables of results beside those of the tests.
+    std::size_t most = 0;
+    for (const Section& section : sections) most = std::max(most, section.rows());
+    std::erase_if(sections, [&](const Section& section) {
+        return 50 * section.rows() < most || (section.rows() < fewest_rows && most >= fewest_rows);
+    });
+    return sections;
+}
+
+std::vector<CsvTable::Row> rows_of(const Section& section, const std::vector<Line>& lines,
+                                   const Dialect& dialect) {
+    std::vector<CsvTable::Row> rows;
+    for (std::size_t i = section.first; i < section.end; ++i)
+        if (!lines[i].remark) rows.push_back({lines[i].number, split(lines[i].text, dialect.delimiter)});
+    return rows;
+}
+
+/// Whether the time of `next` begins where that of `last` ended: the same test on another page.
+bool goes_on(const Section& last, const Section& next, const std::vector<Line>& lines,
+             const Dialect& dialect) {
+    for (std::size_t column = 0; column < next.header.names.size(); ++column) {
+        const std::string name = folded(next.header.names[column]);
+        const auto names_time = [&](std::string_view word) { return name.find(word) != std::string::npos; };
+        constexpr std::string_view words[] = {"time", "zeit", "temps", "tiempo", "tempo"};
+        if (!std::any_of(std::begin(words), std::end(words), names_time)) continue;
+        const auto time = [&](std::size_t line) {
+            const std::vector<std::string> cells = split(lines[line].text, dialect.delimiter);
+            return column < cells.size() ? cell_number(cells[column], dialect.decimal) : std::nan("");
+        };
+        return time(next.first) >= time(last.end - 1) && next.header.names == last.header.names;
+    }
+    return false;
+}
+
+}  // namespace
+
+CsvTable parse_csv(std::string_view bytes, const std::string& file, int specimen) {
+    const std::string text = text_of(bytes, file);
+    std::vector<Line> lines = lines_of(text);
+    const Dialect dialect = dialect_of(lines, file);
+    for (Line& line : lines) {
+        const std::vector<std::string> cells = split(line.text, dialect.delimiter);
+        line.numbers =
+            !line.remark && cells.size() == dialect.columns && worth_of(cells, dialect.decimal) > 0.0;
+    }
+    const std::vector<Section> sections = sections_of(lines, dialect);
+    if (sections.empty())
         throw InputError({.file = file}, "has no two rows of numbers that follow each other",
                          "A test is a table with a row for each reading.");
-    take_header(table, lines, first);
+    // Each specimen's sections, by the index of its first.
+    std::vector<std::size_t> begins = {0};
+    for (std::size_t i = 1; i < sections.size(); ++i)
+        if (!goes_on(sections[i - 1], sections[i], lines, dialect)) begins.push_back(i);
+    const int count = static_cast<int>(begins.size());
+    std::string where;
+    for (const std::size_t i : begins)
+        where += fmt::format("{}{}", where.empty() ? "" : ", ", lines[sections[i].first].number);
+    if (count > 1 && specimen == 0)
+        throw InputError({.file = file, .line = lines[sections[begins[1]].first].number},
+                         fmt::format("has {} specimens: tables begin at the lines {}", count, where),
+                         "One [[...]] of the campaign is one specimen: say which with specimen = 1, 2, ...");
+    if (count > 1 && specimen > count)
+        throw InputError({.file = file}, fmt::format("there is no specimen {}: tables begin at the lines {}",
+                                                     specimen, where));
+    const std::size_t chosen = count > 1 ? static_cast<std::size_t>(specimen - 1) : 0;
+    const std::size_t end = chosen + 1 < begins.size() ? begins[chosen + 1] : sections.size();
+    const Header& header = sections[begins[chosen]].header;
+    CsvTable table{.file = file,
+                   .names = header.names,
+                   .units = header.units,
+                   .header_line = header.line,
+                   .column_count = dialect.columns,
+                   .delimiter = dialect.delimiter,
+                   .decimal = dialect.decimal,
+                   .specimens = count};
+    for (std::size_t i = begins[chosen]; i < end; ++i)
+        for (CsvTable::Row& row : rows_of(sections[i], lines, dialect)) table.rows.push_back(std::move(row));
     return table;
 }
 
-CsvTable read_csv_table(const std::string& path) {
+CsvTable read_csv_table(const std::string& path, int specimen) {
     constexpr std::size_t longest = 32U << 20U;
     try {
-        return parse_csv(read_file(path, "file of a test", longest), path);
+        return parse_csv(read_file(path, "file of a test", longest), path, specimen);
     } catch (const InputError& error) {
         if (!error.advice().empty() || error.problem().find("longer than") == std::string::npos) throw;
         throw InputError(

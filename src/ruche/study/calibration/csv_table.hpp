@@ -18,24 +18,19 @@ struct CsvTable {
     std::vector<std::string> units;  ///< of a row of its own below the names; empty without
     int header_line = 0;             ///< of the names; 0 without
     std::vector<Row> rows;           ///< numbers, and rows among them with other things
-    char delimiter = ',';            ///< ' ' for any blanks
+    std::size_t column_count = 0;
+    char delimiter = ',';  ///< ' ' for any blanks
     char decimal = '.';
-
-    std::size_t column_count() const { return rows.empty() ? 0 : rows.front().cells.size(); }
+    int specimens = 1;  ///< that the file has one below the other
 };
 
-/// A cell as a number with that decimal mark; NaN when it is none. "1.234,5" and "1,234.5" are numbers too.
-double cell_number(std::string_view cell, char decimal);
-
-/// Bytes as UTF-8 without a byte order mark, from UTF-8, UTF-16 with a mark, or else Windows-1252 (which
-/// holds Latin-1). `file` is named when it is no text.
-std::string text_of(std::string_view bytes, const std::string& file);
-
-/// Finds delimiter, decimal mark, names and units. Throws InputError when there is no table of at least two
-/// columns in it.
-CsvTable parse_csv(std::string_view bytes, const std::string& file);
+/// Finds delimiter, decimal mark, names and units. A table that begins anew below (its names again, or other
+/// names of force and displacement) is that of another specimen, unless its time goes on; a table of results,
+/// much shorter than the others, is none. `specimen`, from 1, says which; 0 where there is only one.
+/// Throws InputError when there is no table of at least two columns, or it is not clear which.
+CsvTable parse_csv(std::string_view bytes, const std::string& file, int specimen = 0);
 
 /// Reads a file, of at most 32 MB.
-CsvTable read_csv_table(const std::string& path);
+CsvTable read_csv_table(const std::string& path, int specimen = 0);
 
 }  // namespace ruche

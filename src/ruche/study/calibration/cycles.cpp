@@ -158,8 +158,11 @@ std::vector<std::size_t> sudden_falls(const TestRecord& record, const Cycle& cyc
     };
     const double step = range(record.displacement) / 50.0;
     const double fall = 0.1 * range(record.force);
+    // A sample that is held at the peak relaxes.
+    const double held = record.displacement[cycle.peak] - 0.25 * step;
     std::size_t from = cycle.begin;
     for (std::size_t i = cycle.begin + 1; i <= cycle.peak && i < record.size(); ++i) {
+        if (record.displacement[i] > held) break;
         while (record.displacement[i] - record.displacement[from] > step && from + 1 < i) ++from;
         if (record.force[from] - record.force[i] < fall) continue;
         falls.push_back(i);

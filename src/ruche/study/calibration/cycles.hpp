@@ -26,8 +26,8 @@ std::vector<Cycle> find_cycles(const TestRecord& record);
 double slack_of(const TestRecord& record, const Cycle& first);
 
 /// Sudden falls of the force, by more than a tenth of its range, from one row to the next or while the
-/// displacement grows by less than a fiftieth of its range: a grip slipped or a yarn broke. The rows where
-/// they end.
+/// displacement grows by less than a fiftieth of its range: a grip slipped or a yarn broke; but not where the
+/// sample is held at the peak and relaxes. The rows where they end.
 std::vector<std::size_t> sudden_falls(const TestRecord& record, const Cycle& cycle);
 
 }  // namespace ruche

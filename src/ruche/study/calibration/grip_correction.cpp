@@ -10,16 +10,68 @@
 namespace ruche {
 namespace {
 
-constexpr int node_count = 8;
+/// The coordinate in which the ratio is a smooth curve: stretch plus homogeneous stress, each over its
+/// largest. In stretch alone the ratio has a singularity just behind the last row, where the fabric locks,
+/// and polynomials converge slowly; there the stress grows as the logarithm of what is left, which takes the
+/// singularity away.
+class SmoothCoordinate {
+  public:
+    SmoothCoordinate(const Material& material, double angle_deg, double largest_stretch)
+        : pull_(material, {}, angle_deg),
+          largest_stretch_(largest_stretch),
+          largest_stress_(stress(largest_stretch)) {}
 
-/// Chebyshev points of the second kind on [low, high], the ends included.
-std::vector<double> chebyshev(double low, double high) {
-    std::vector<double> nodes;
-    for (int i = 0; i < node_count; ++i) {
-        const double c = std::cos(std::numbers::pi * i / (node_count - 1));
-        nodes.push_back(0.5 * (low + high) + 0.5 * (high - low) * c);
+    /// Nominal stress of the homogeneous law, MPa; NaN where it has none.
+    double stress(double stretch) {
+        const PullPoint point = pull_.at(green_strain(stretch), false);
+        return point.found ? stretch * point.stress : std::nan("");
     }
-    return nodes;
+    double transverse_stretch(double stretch) {
+        return stretch_of(pull_.at(green_strain(stretch), false).transverse);
+    }
+    double operator()(double stretch) {
+        return stretch / largest_stretch_ + stress(stretch) / largest_stress_;
+    }
+    double stretch_at(double coordinate, double low, double high) {
+        for (int i = 0; i < 40; ++i) {
+            const double middle = 0.5 * (low + high);
+            ((*this)(middle) < coordinate ? low : high) = middle;
+        }
+        return 0.5 * (low + high);
+    }
+
+  private:
+    Pull pull_;
+    double largest_stretch_;
+    double largest_stress_;
+};
+
+/// Stretches at the Chebyshev points of the second kind of the coordinate on [low, high], the ends included.
+std::vector<double> chebyshev(SmoothCoordinate& coordinate, double low, double high) {
+    constexpr int count = 8;
+    const double first = coordinate(low);
+    const double last = coordinate(high);
+    std::vector<double> stretches = {high};
+    for (int i = 1; i < count - 1; ++i) {
+        const double c = std::cos(std::numbers::pi * i / (count - 1));
+        stretches.push_back(
+            coordinate.stretch_at(0.5 * (first + last) + 0.5 * (last - first) * c, low, high));
+    }
+    stretches.push_back(low);
+    return stretches;
+}
+
+/// A stretch that was read at the largest load may lie beyond what the law can do: that which it does.
+double stretch_under_load(const LawCurve& curve, const Material& material, double read) {
+    const double load = *std::max_element(curve.nominal_stress.begin(), curve.nominal_stress.end());
+    Pull pull(material, {}, curve.angle_deg);
+    double low = 1.0;
+    double high = 1.5 * read;
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (low + high);
+        (middle * pull.at(green_strain(middle), false).stress < load ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
 }
 
 void correct(LawCurve& curve, const TensionCurve& test, const Material& material, double element_size) {
@@ -28,8 +80,10 @@ void correct(LawCurve& curve, const TensionCurve& test, const Material& material
     const bool dogbone = test.test.grips == Grips::dogbone;
     if (dogbone && test.test.grip_width_mm == 0.0) return;
     const auto [low, high] = std::minmax_element(curve.stretch.begin(), curve.stretch.end());
-    const double least = std::max(*low, 1.0 + 0.02 * (*high - 1.0));  // at rest the ratio is 0/0
-    std::vector<double> stretches = chebyshev(least, *high);
+    const double most = curve.by_force ? stretch_under_load(curve, material, *high) : *high;
+    const double least = std::max(*low, 1.0 + 0.02 * (most - 1.0));  // at rest the ratio is 0/0
+    SmoothCoordinate coordinate(material, curve.angle_deg, most);
+    const std::vector<double> stretches = chebyshev(coordinate, least, most);
     std::vector<double> strains;
     strains.reserve(stretches.size());
     for (const double s : stretches) strains.push_back(s - 1.0);
@@ -40,20 +94,19 @@ void correct(LawCurve& curve, const TensionCurve& test, const Material& material
                                .grip_width_mm = dogbone ? test.test.grip_width_mm : 0.0,
                                .gauge_length_mm = dogbone ? test.test.gauge_length_mm : 0.0};
     const ClampedResponse response = simulate_clamped(sample, material, strains);
-    Pull pull(material, {}, curve.angle_deg);
     std::vector<double> nodes, force, width;
     for (std::size_t i = 0; i < stretches.size(); ++i) {
-        const PullPoint point = pull.at(green_strain(stretches[i]), false);
-        const double free = stretches[i] * point.stress * test.test.width_mm * material.fabric_thickness;
-        if (!point.found || !std::isfinite(response.force_N[i]) || free <= 0.0) continue;
-        nodes.push_back(stretches[i]);
+        const double free = coordinate.stress(stretches[i]) * test.test.width_mm * material.fabric_thickness;
+        if (!std::isfinite(response.force_N[i]) || !(free > 0.0)) continue;
+        nodes.push_back(coordinate(stretches[i]));
         force.push_back(response.force_N[i] / free);
-        width.push_back(response.mid_width_mm[i] / (test.test.width_mm * stretch_of(point.transverse)));
+        width.push_back(response.mid_width_mm[i] /
+                        (test.test.width_mm * coordinate.transverse_stretch(stretches[i])));
     }
     if (nodes.size() < 3) return;
     const auto [first, last] = std::minmax_element(nodes.begin(), nodes.end());
     for (const double stretch : curve.stretch) {
-        const double x = std::clamp(stretch, *first, *last);
+        const double x = std::clamp(coordinate(std::clamp(stretch, least, most)), *first, *last);
         curve.force_ratio.push_back(interpolate(nodes, force, x));
         curve.width_ratio.push_back(interpolate(nodes, width, x));
     }

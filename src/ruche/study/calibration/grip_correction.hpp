@@ -6,7 +6,7 @@
 namespace ruche {
 
 /// What the grips of each sample change: force and mid width of the simulated clamped sample (its measured
-/// length, width and angle) over those of the homogeneous law, at Chebyshev points of the measured stretch,
+/// length, width and angle) over those of the homogeneous law, at Chebyshev points of stretch and stress,
 /// interpolated to the rows. The ratio is within some per cent of one and hardly depends on the parameters,
 /// so a fit alternates: fit the homogeneous law times the ratio, simulate at the new parameters, until they
 /// rest. Where the simulator finds no equilibrium the ratio is that of the neighbouring points.

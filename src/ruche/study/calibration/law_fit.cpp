@@ -55,20 +55,19 @@ std::vector<Correlation> strong_correlations(const LawProblem& law, const LeastS
     return strong;
 }
 
-double stress_error(const Material& m, std::span<const LawCurve> curves, double angle) {
+/// Rms over the curves of an orientation, of a fit in which it may have had no part.
+double error_of(const LawProblem& law, const LeastSquaresFit& fit, std::span<const LawCurve> curves,
+                double angle) {
+    LeastSquaresFit all = fit;
+    if (!law.problem().evaluate(all.p, all.residuals, nullptr)) return std::nan("");
     double sum = 0.0;
-    double largest = 0.0;
-    double count = 0.0;
-    for (const LawCurve& curve : curves) {
-        if (curve.angle_deg != angle) continue;
-        const LawPrediction prediction = predict(m, curve);
-        for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
-            sum += std::pow(prediction.nominal_stress[i] - curve.nominal_stress[i], 2.0);
-            largest = std::max(largest, curve.nominal_stress[i]);
-            count += 1.0;
-        }
+    int count = 0;
+    for (std::size_t i = 0; i < curves.size(); ++i) {
+        if (curves[i].angle_deg != angle) continue;
+        sum += std::pow(law.relative_rms(all, i), 2.0);
+        ++count;
     }
-    return std::sqrt(sum / count) / largest;
+    return std::sqrt(sum / count);
 }
 
 std::vector<LeftOutOrientation> leave_out(LawProblem& law, const LeastSquaresFit& fit,
@@ -80,10 +79,9 @@ std::vector<LeftOutOrientation> leave_out(LawProblem& law, const LeastSquaresFit
     for (const double angle : angles) {
         law.leave_out(angle);
         const LeastSquaresFit without = minimise(law.problem(), fit.p);
-        result.push_back({angle, stress_error(law.material(without.p), curves, angle),
-                          stress_error(law.material(fit.p), curves, angle)});
+        law.leave_out(infinity);
+        result.push_back({angle, error_of(law, without, curves, angle), error_of(law, fit, curves, angle)});
     }
-    law.leave_out(infinity);
     return result;
 }
 
@@ -114,8 +112,10 @@ LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options) {
         result.correlations = strong_correlations(law, fit);
         result.left_out = leave_out(law, fit, curves);
     } else {
+        const Eigen::VectorXd half =
+            covariance(law.problem(), fit).deviation * std::sqrt(profile_threshold(law, correlation));
         for (int i = 0; i < law.parameter_count(); ++i)
-            result.parameters.push_back({law.parameter(i), fit.p[i], fit.p[i], fit.p[i]});
+            result.parameters.push_back({law.parameter(i), fit.p[i], fit.p[i] - half[i], fit.p[i] + half[i]});
     }
     result.material = law.material(fit.p);
     result.converged = fit.converged;

@@ -19,12 +19,16 @@ struct LawCurve {
     /// What the sample's grips change: the simulated sample's force over that of the homogeneous law, and the
     /// same for the width, per row; empty for a homogeneous sample.
     std::vector<double> force_ratio, width_ratio;
+    /// The force was given (hung masses) and the stretch read: the error is the stretch's.
+    bool by_force = false;
 };
 
 struct LawFitOptions {
     Material start;            ///< values of what is not fitted; those of the others are not used
     bool fit_poisson = false;  ///< with the widths; else start's Poisson's ratio is taken as it is
-    bool intervals = true;     ///< profile likelihood, leave one orientation out: a hundred further fits
+    /// Profile likelihood and leaving orientations out, a hundred further fits; else intervals are those of
+    /// the law made linear at the optimum.
+    bool intervals = true;
 };
 
 /// One parameter of the fit.
@@ -69,9 +73,10 @@ LawPrediction predict(const Material& material, const LawCurve& curve);
 
 /// All orientations at once: alpha_1 to gamma_2 (and nu_f) that meet every row of every curve in the
 /// least-squares sense, the material point's transverse and shear strain free, Neo-Hookean share included.
-/// Rows are weighted with their standard deviation: the noise of their curve (from differences of neighbours)
-/// and one misfit of the law for all. Intervals are those of the profile likelihood at 95 %, widened for rows
-/// whose residuals resemble their neighbours'.
+/// Of a curve by force the stretches are met: (lambda(P) - lambda) times the mean slope of the curve, so that
+/// it is a stress as well. Rows are weighted with their standard deviation: the noise of their curve (from
+/// differences of neighbours) and one misfit of the law for all. Intervals are those of the profile
+/// likelihood at 95 %, widened for rows whose residuals resemble their neighbours'.
 [[nodiscard]] LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options);
 
 /// alpha~, beta and gamma of S = alpha~ E - beta log((gamma - E)/gamma) (paper eq. 12) for one curve: linear

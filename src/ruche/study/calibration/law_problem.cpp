@@ -35,6 +35,7 @@ LawProblem::LawProblem(std::span<const LawCurve> curves, const LawFitOptions& op
         Rows rows{.begin = count, .stress = static_cast<int>(curve.stretch.size())};
         rows.transverse = static_cast<int>(curve.transverse.size());
         rows.stress_scale = largest(curve.nominal_stress);
+        rows.mean_slope = rows.stress_scale / (largest(curve.stretch) - 1.0);
         rows_.push_back(rows);
         count += rows.stress + rows.transverse;
         stress = std::max(stress, rows.stress_scale);
@@ -60,8 +61,10 @@ LawProblem::LawProblem(std::span<const LawCurve> curves, const LawFitOptions& op
             problem_.high[k] = 1e3 * stiffness;
         } else if (i < poisson) {
             const int axis = static_cast<int>(i - gamma_1);
-            const double reached = green_strain(largest(nearest(curves, axis).stretch));
-            problem_.low[k] = reached * (1.0 + 1e-5);
+            const LawCurve& along = nearest(curves, axis);
+            const double reached = green_strain(largest(along.stretch));
+            // A stretch that was read may lie beyond the limit, one that was set may not.
+            problem_.low[k] = reached * (along.by_force ? 0.8 : 1.0 + 1e-5);
             problem_.high[k] = 25.0 * reached;
         } else {
             problem_.low[k] = -0.5;
@@ -125,29 +128,73 @@ bool LawProblem::evaluate_curve(std::size_t index, const Material& m, Eigen::Vec
     Pull pull(m, {}, curve.angle_deg);
     for (int i = 0; i < rows.stress; ++i) {
         const auto row = static_cast<std::size_t>(i);
-        const double stretch = curve.stretch[row];
-        const PullPoint point = pull.at(green_strain(stretch), jacobian != nullptr);
-        if (!point.found) return false;
-        const double force = curve.force_ratio.empty() ? 1.0 : curve.force_ratio[row];
-        const double scale = stretch * force / rows.stress_deviation;
+        Answer answer;
+        const bool found = curve.by_force ? answer_to_force(pull, curve, row, rows.mean_slope, answer)
+                                          : answer_to_stretch(pull, curve, row, jacobian != nullptr, answer);
+        if (!found) return false;
         const int a = rows.begin + i;
-        r[a] = scale * point.stress - curve.nominal_stress[row] / rows.stress_deviation;
+        r[a] = answer.residual / rows.stress_deviation;
         const int b = rows.begin + rows.stress + i;
         const double width = curve.width_ratio.empty() ? 1.0 : curve.width_ratio[row];
         if (rows.transverse > 0) {
-            const double model = green_strain(width * stretch_of(point.transverse));
+            const double model = green_strain(width * stretch_of(answer.transverse));
             r[b] = (model - curve.transverse[row]) / rows.transverse_deviation;
         }
         for (std::size_t k = 0; jacobian != nullptr && k < free_.size(); ++k) {
             const auto column = static_cast<Eigen::Index>(k);
             const auto parameter = static_cast<Eigen::Index>(free_[k]);
-            (*jacobian)(a, column) = scale * point.stress_by_parameter[parameter];
+            (*jacobian)(a, column) = answer.residual_by_parameter[parameter] / rows.stress_deviation;
             if (rows.transverse > 0)
                 (*jacobian)(b, column) =
-                    width * width * point.transverse_by_parameter[parameter] / rows.transverse_deviation;
+                    width * width * answer.transverse_by_parameter[parameter] / rows.transverse_deviation;
         }
     }
     return true;
+}
+
+bool LawProblem::answer_to_stretch(Pull& pull, const LawCurve& curve, std::size_t row, bool derivatives,
+                                   Answer& answer) {
+    const double stretch = curve.stretch[row];
+    const PullPoint point = pull.at(green_strain(stretch), derivatives);
+    const double ratio = curve.force_ratio.empty() ? 1.0 : curve.force_ratio[row];
+    answer.residual = ratio * stretch * point.stress - curve.nominal_stress[row];
+    answer.residual_by_parameter = ratio * stretch * point.stress_by_parameter;
+    answer.transverse = point.transverse;
+    answer.transverse_by_parameter = point.transverse_by_parameter;
+    return point.found;
+}
+
+/// Newton's method for the stretch at which the law pulls as hard as the row says, kept between bounds.
+bool LawProblem::answer_to_force(Pull& pull, const LawCurve& curve, std::size_t row, double slope,
+                                 Answer& answer) {
+    const double ratio = curve.force_ratio.empty() ? 1.0 : curve.force_ratio[row];
+    double low = 0.9;
+    double high = 2.0 * largest(curve.stretch);
+    double stretch = curve.stretch[row];
+    for (int iteration = 0; iteration < 100; ++iteration) {
+        const PullPoint point = pull.at(green_strain(stretch), true);
+        if (!point.found) return false;
+        const double missing = curve.nominal_stress[row] - ratio * stretch * point.stress;
+        // P = lambda S(E): dP/dlambda = S + lambda^2 dS/dE.
+        const double by_stretch = ratio * (point.stress + stretch * stretch * point.stress_by_strain);
+        const double newton = missing / by_stretch;
+        if (std::abs(newton) > 1e-12) {
+            (missing > 0.0 ? low : high) = stretch;
+            const double next = stretch + newton;
+            stretch = next > low && next < high ? next : 0.5 * (low + high);
+            continue;
+        }
+        answer.residual = slope * (stretch - curve.stretch[row]);
+        answer.residual_by_parameter = -slope * ratio * stretch / by_stretch * point.stress_by_parameter;
+        answer.transverse = point.transverse;
+        // dE_tt/dp = (dE_tt/dp)_lambda, and what the stretch that moves with p adds is dE_tt/dE lambda
+        // dlambda/dp.
+        answer.transverse_by_parameter =
+            point.transverse_by_parameter +
+            point.transverse_by_strain * stretch * answer.residual_by_parameter / slope;
+        return true;
+    }
+    return false;
 }
 
 std::vector<double> LawProblem::block(const Eigen::VectorXd& r, int begin, int count, double scale) const {

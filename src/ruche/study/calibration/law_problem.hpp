@@ -33,12 +33,24 @@ class LawProblem {
         int stress = 0;      // rows
         int transverse = 0;  // rows, 0 without widths
         double stress_scale = 1.0;
+        double mean_slope = 1.0;  // stress_scale over the largest stretch beyond 1
         double stress_deviation = 1.0;
         double transverse_deviation = 1.0;
         bool left_out = false;
     };
 
     bool evaluate(const Eigen::VectorXd& p, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian) const;
+    /// The law's answer to a row: residual (MPa) and, per parameter, its derivatives; false where it has
+    /// none.
+    struct Answer {
+        double residual = 0.0;
+        double transverse = 0.0;  ///< Green strain, without the grips' ratio
+        LawGradient residual_by_parameter, transverse_by_parameter;
+    };
+    static bool answer_to_stretch(Pull& pull, const LawCurve& curve, std::size_t row, bool derivatives,
+                                  Answer& answer);
+    static bool answer_to_force(Pull& pull, const LawCurve& curve, std::size_t row, double slope,
+                                Answer& answer);
     bool evaluate_curve(std::size_t index, const Material& m, Eigen::VectorXd& r, Eigen::MatrixXd* j) const;
     std::vector<double> block(const Eigen::VectorXd& r, int begin, int count, double scale) const;
 

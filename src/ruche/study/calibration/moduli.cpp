@@ -15,7 +15,8 @@ namespace ruche {
 PlasticCurve read_plastic_curve(const PlasticTest& test) {
     PlasticCurve curve{.test = test};
     const TestRecord record =
-        read_record(read_csv_table(test.file), {.columns = test.columns, .length_mm = test.length_mm});
+        read_record(read_csv_table(test.file, test.specimen),
+                    {.columns = test.columns, .length_mm = test.length_mm, .specimen = test.specimen});
     curve.warnings = record.warnings;
     const std::vector<Cycle> cycles = find_cycles(record);
     if (cycles.empty()) throw InputError({.file = test.file}, "the displacement never changes");

@@ -107,10 +107,17 @@ PaperFit fit_as_in_the_paper(std::span<const LawCurve> curves, const Material& s
     };
     for (std::size_t axis = 0; axis < 2; ++axis) {
         const auto& [tilde, beta, gamma] = interval[axis];
-        const auto at = [&](double t) {
-            return axis == 0 ? alpha(t, result.axis[1].alpha)[0] : alpha(result.axis[0].alpha, t)[1];
+        // alpha_i depends on both fits, which are independent: their deviations add in quadrature.
+        const std::size_t across = 1 - axis;
+        const auto deviation = [&](std::size_t of, double value) {
+            std::array<double, 2> both = {result.axis[0].alpha, result.axis[1].alpha};
+            both[of] = value;
+            return alpha(both[0], both[1])[axis] - best[axis];
         };
-        estimate(axis, tilde, at(tilde.low), at(tilde.high));
+        const ProfileInterval& other = interval[across][0];
+        const double down = std::hypot(deviation(axis, tilde.low), deviation(across, other.low));
+        const double up = std::hypot(deviation(axis, tilde.high), deviation(across, other.high));
+        estimate(axis, tilde, best[axis] - down, best[axis] + up);
         estimate(3 + axis, beta, beta.low, beta.high);
         estimate(5 + axis, gamma, gamma.low, gamma.high);
     }

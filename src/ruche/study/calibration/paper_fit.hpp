@@ -18,8 +18,8 @@ struct PaperFit {
 ///
 /// (eq. 12 with its missing 1/(1 - nu_f^2)), and solves the second line for alpha_1 and alpha_2. Knows
 /// neither the Neo-Hookean share nor the grips. alpha_3 is left as it is in `start`. Intervals are those of
-/// the profile likelihood of alpha~, beta and gamma; those of alpha follow at the other axis' best value.
-/// Throws InputError when there is no curve within five degrees of an axis.
+/// the profile likelihood of alpha~, beta and gamma; those of alpha hold what both axes' fits leave open, at
+/// the given Poisson's ratio. Throws InputError when there is no curve within five degrees of an axis.
 [[nodiscard]] PaperFit fit_as_in_the_paper(std::span<const LawCurve> curves, const Material& start);
 
 /// alpha from alpha~ (both axes) by Newton's method; alpha~_i >= 0.

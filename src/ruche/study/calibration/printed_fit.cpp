@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "ruche/output/metrics.hpp"
 #include "ruche/scene/read_scene.hpp"
@@ -42,17 +43,37 @@ Scene scene_of(const PrintedSample& sample) {
                        to_string(sample.place));
 }
 
+/// What tension tests measure as force per width, so that its product with the thickness is what is known:
+/// another thickness makes other moduli of the same forces.
+std::vector<double Material::*> per_thickness(const Campaign& campaign, PrintedParameter parameter) {
+    if (campaign.tension.empty() || parameter != PrintedParameter::fabric_thickness) return {};
+    std::vector<double Material::*> members = {&Material::alpha_1, &Material::alpha_2, &Material::alpha_3,
+                                               &Material::beta_1, &Material::beta_2};
+    if (campaign.fabric.youngs_modulus != YoungsModulusChoice::stated)
+        members.push_back(&Material::fabric_youngs_modulus);
+    return members;
+}
+
+std::string name_of(double Material::*member) {
+    for (const Field<Material>& field : fields<Material>())
+        if (const auto* m = std::get_if<double Material::*>(&field.member); m != nullptr && *m == member)
+            return std::string(bare_name(info(field)));
+    return {};
+}
+
 /// A sample, its scene with the card's material, and what the last release gave.
 class Sample {
   public:
-    Sample(const PrintedSample& sample, const MaterialCard& card)
-        : sample_(sample), scene_(scene_of(sample)) {
+    Sample(const PrintedSample& sample, const MaterialCard& card,
+           std::vector<double Material::*> per_thickness)
+        : sample_(sample), scene_(scene_of(sample)), per_thickness_(std::move(per_thickness)) {
         scene_.material = resolve_card(card, scene_.fabric.prestretch).material;
     }
 
     /// ln of the simulated radius with one value changed.
     double log_radius(double Material::*member, double value, const Control& control) {
-        scene_.material.*member = value;
+        const double before = std::exchange(scene_.material.*member, value);
+        for (const auto modulus : per_thickness_) scene_.material.*modulus *= before / value;
         const Result result = simulate(scene_, control);
         certain_ = result.equilibrium.status == SolveStatus::converged && result.equilibrium.stable;
         double curvature = 0.0;
@@ -83,6 +104,7 @@ class Sample {
   private:
     PrintedSample sample_;
     Scene scene_;
+    std::vector<double Material::*> per_thickness_;
     double radius_ = 0.0;
     bool certain_ = false;
 };
@@ -95,13 +117,18 @@ void fit_printed_samples(Calibration& calibration, const Control& control) {
     if (card.sets.empty()) {
         const MaterialCard base = load_card(campaign.printed_fit.card);
         card.sets = base.sets;
-        calibration.warnings.push_back("no test of the fabric itself: all but one value are those of card " +
-                                       base.name);
+        for (CardSet& set : card.sets)
+            for (const auto& [name, value] : measured_values(calibration).values)
+                if (value.source.starts_with("measured") || value.source.starts_with("stated"))
+                    set.values[name] = value;
+        calibration.warnings.push_back(
+            "no tension test of the fabric: what was not measured is that of card " + base.name);
     }
     const Adjusted what = adjusted(campaign.printed_fit.parameter);
     std::vector<Sample> samples;
     samples.reserve(campaign.printed.size());
-    for (const PrintedSample& sample : campaign.printed) samples.emplace_back(sample, card);
+    const auto moduli = per_thickness(campaign, campaign.printed_fit.parameter);
+    for (const PrintedSample& sample : campaign.printed) samples.emplace_back(sample, card, moduli);
 
     double q = std::log(samples.front().start(what.member));
     std::vector<double> slope(samples.size(), 0.0);
@@ -161,12 +188,21 @@ void fit_printed_samples(Calibration& calibration, const Control& control) {
                                                to_string(outcome.sample.place), outcome.simulated_radius_mm,
                                                outcome.sample.radius_mm));
     }
-    for (CardSet& set : card.sets)
+    for (CardSet& set : card.sets) {
+        for (const auto modulus : moduli) {
+            CardValue& value = set.values.at(name_of(modulus));
+            const double factor = set.values.at(fit.parameter).value / fit.value;
+            value.value *= factor;
+            if (value.interval)
+                value.interval = std::array{factor * value.interval->at(0), factor * value.interval->at(1)};
+            value.source += fmt::format("; at the thickness of the printed samples, times {:.4g}", factor);
+        }
         set.values[fit.parameter] = {
             fit.value,
             fmt::format("fitted to the radii of {} printed samples by simulation", samples.size()),
             std::array{fit.low, fit.high},
             {file_with_hash(campaign.file)}};
+    }
     calibration.warnings.insert(calibration.warnings.end(), fit.warnings.begin(), fit.warnings.end());
     calibration.printed = fit;
 }

@@ -11,11 +11,16 @@ namespace {
 /// The profile of one parameter: sqrt(S(v) - S_best), which is linear in v for a linear model.
 class Profile {
   public:
-    Profile(const LeastSquares& problem, const LeastSquaresFit& best, int index)
-        : problem_(problem), best_(best), index_(index), last_(best.p) {}
+    Profile(const LeastSquares& problem, const LeastSquaresFit& best, int index, const Covariance& covariance)
+        : problem_(problem), best_(best), index_(index), along_(best.p.size()), last_(best.p) {
+        const Eigen::VectorXd& deviation = covariance.deviation;
+        along_.setZero();
+        if (deviation[index] > 0.0)
+            along_ = covariance.correlation.col(index).cwiseProduct(deviation) / deviation[index];
+    }
 
     double operator()(double value) {
-        Eigen::VectorXd start = last_;
+        Eigen::VectorXd start = last_ + along_ * (value - last_[index_]);
         start[index_] = value;
         // The height is wanted to a hundredth, of a sum of squares of about the number of rows.
         constexpr double enough = 1e-7;
@@ -37,7 +42,8 @@ class Profile {
     const LeastSquares& problem_;
     const LeastSquaresFit& best_;
     int index_;
-    Eigen::VectorXd last_;  // optimum of the others at the value tried last
+    Eigen::VectorXd along_;  // how the others' optimum moves with the value, to first order
+    Eigen::VectorXd last_;   // optimum of the others at the value tried last
     double lowest_ = std::numeric_limits<double>::infinity();
     Eigen::VectorXd lowest_p_;
 };
@@ -93,10 +99,11 @@ ProfileInterval profile_interval(const LeastSquares& problem, const LeastSquares
                                  double threshold) {
     const double value = best.p[index];
     const double target = std::sqrt(threshold);
-    double step = covariance(problem, best).deviation[index] * target;
+    const Covariance about = covariance(problem, best);
+    double step = about.deviation[index] * target;
     if (!(step > 0.0) || !std::isfinite(step)) step = 0.1 * std::abs(value) + 1e-6;
     step = std::min(step, 0.5 * (std::abs(value) + 1e-3));
-    Profile profile(problem, best, index);
+    Profile profile(problem, best, index, about);
     const End low = find_end(profile, value, -step, problem.low[index], target);
     const End high = find_end(profile, value, step, problem.high[index], target);
     return {low.value, high.value, low.open, high.open, profile.better()};

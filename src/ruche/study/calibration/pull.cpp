@@ -73,10 +73,14 @@ PullPoint Pull::at(double strain, bool derivatives) {
     point.shear = strain_[2];
     if (!derivatives || !point.found) return point;
     const Mat3 tangent = turn_.transpose() * response.tangent * turn_;
+    const Mat2 flexibility = tangent.bottomRightCorner<2, 2>().inverse();
+    const Vec2 free_by_strain = -flexibility * tangent.block<2, 1>(1, 0);
+    point.stress_by_strain = tangent(0, 0) + tangent.block<1, 2>(0, 1).dot(free_by_strain);
+    point.transverse_by_strain = free_by_strain[0];
     const StressByParameter by_parameter =
         turn_.transpose() * stress_by_parameter(material_, options_, turn_ * strain_);
     const Eigen::Matrix<double, 2, static_cast<int>(law_parameter_count)> free =
-        -tangent.bottomRightCorner<2, 2>().inverse() * by_parameter.bottomRows<2>();
+        -flexibility * by_parameter.bottomRows<2>();
     point.transverse_by_parameter = free.row(0);
     point.stress_by_parameter = by_parameter.row(0) + tangent.block<1, 2>(0, 1) * free;
     return point;

@@ -10,9 +10,11 @@ using LawGradient = Eigen::Matrix<double, 1, static_cast<int>(law_parameter_coun
 
 /// What a material point answers to a pull: nothing holds its width or its shear.
 struct PullPoint {
-    double stress = 0.0;      ///< S along the pull (second Piola-Kirchhoff), MPa
-    double transverse = 0.0;  ///< Green strain across the pull
-    double shear = 0.0;       ///< 2 E between the two
+    double stress = 0.0;                ///< S along the pull (second Piola-Kirchhoff), MPa
+    double transverse = 0.0;            ///< Green strain across the pull
+    double shear = 0.0;                 ///< 2 E between the two
+    double stress_by_strain = 0.0;      ///< dS/dE along the pull, the rest free, MPa
+    double transverse_by_strain = 0.0;  ///< dE_tt/dE likewise
     LawGradient stress_by_parameter = LawGradient::Zero();
     LawGradient transverse_by_parameter = LawGradient::Zero();
     bool found = false;  ///< an equilibrium was found

@@ -54,7 +54,8 @@ double bend(const Window& w, double range) {
 ShearCurve read_shear_curve(const ShearTest& test, double thickness) {
     ShearCurve curve{.test = test};
     const TestRecord record =
-        read_record(read_csv_table(test.file), {.columns = test.columns, .length_mm = test.height_mm});
+        read_record(read_csv_table(test.file, test.specimen),
+                    {.columns = test.columns, .length_mm = test.height_mm, .specimen = test.specimen});
     curve.warnings = record.warnings;
     const std::vector<Cycle> cycles = find_cycles(record);
     if (record.size() < 6 || cycles.empty())

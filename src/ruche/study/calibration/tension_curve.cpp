@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 #include "ruche/study/calibration/pull.hpp"
 #include "ruche/study/calibration/statistics.hpp"
@@ -38,6 +39,101 @@ void flip_if_negative(TensionCurve& curve) {
         flip(r.displacement);
         curve.warnings.push_back(r.file + ": the displacement is negative; its sign was turned");
     }
+}
+
+/// Rows whose force is off the median of its neighbours by more than half of the test's force: what a cable
+/// or a radio put there, not the sample.
+std::vector<std::size_t> spikes(const TestRecord& record) {
+    std::vector<std::size_t> found;
+    const std::vector<double>& force = record.force;
+    constexpr std::size_t reach = 2;
+    if (record.driven_by_force || force.size() < 20) return found;
+    // All but the largest twentieth, so that spikes do not make the scale.
+    std::vector<double> sizes;
+    for (const double f : force) sizes.push_back(std::abs(f));
+    const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 19 / 20);
+    std::nth_element(sizes.begin(), place, sizes.end());
+    const double scale = *place;
+    for (std::size_t i = 0; i < force.size(); ++i) {
+        const std::size_t first = std::min(i > reach ? i - reach : 0, force.size() - 2 * reach - 1);
+        std::vector<double> near(force.begin() + static_cast<std::ptrdiff_t>(first),
+                                 force.begin() + static_cast<std::ptrdiff_t>(first + 2 * reach + 1));
+        std::nth_element(near.begin(), near.begin() + reach, near.end());
+        if (std::abs(force[i] - near[reach]) > 0.5 * scale) found.push_back(i);
+    }
+    return found;
+}
+
+void erase(TestRecord& record, std::size_t row) {
+    const auto from = [&](auto& column) {
+        if (!column.empty()) column.erase(column.begin() + static_cast<std::ptrdiff_t>(row));
+    };
+    from(record.line);
+    from(record.force);
+    from(record.displacement);
+    from(record.width);
+    from(record.branch);
+}
+
+void leave_spikes_out(TensionCurve& curve) {
+    TestRecord& r = curve.record;
+    const std::vector<std::size_t> found = spikes(r);
+    // More than one in twenty are no spikes.
+    if (found.empty() || 20 * found.size() > r.size()) return;
+    curve.warnings.push_back(
+        fmt::format("{}:{}: a force of {:.4g} N stands alone among its neighbours; {} such rows were "
+                    "left out",
+                    r.file, r.line[found.front()], r.force[found.front()], found.size()));
+    for (auto i = found.rbegin(); i != found.rend(); ++i) erase(r, *i);
+}
+
+/// A displacement that begins far from 0 while nothing pulls is a position: the distance between the grips,
+/// or wherever the crosshead stood.
+void set_position_to_zero(TensionCurve& curve) {
+    TestRecord& r = curve.record;
+    const double start = r.displacement.front();
+    const double largest = *std::max_element(r.force.begin(), r.force.end());
+    if (start < 0.3 * curve.test.length_mm || std::abs(r.force.front()) > 0.1 * largest) return;
+    const bool is_length = std::abs(start - curve.test.length_mm) < 0.03 * curve.test.length_mm;
+    const double zero = is_length ? curve.test.length_mm : start;
+    for (double& d : r.displacement) d -= zero;
+    curve.warnings.push_back(
+        is_length
+            ? fmt::format("{}: the displacement begins at {:.4g} mm, about length_mm: it was taken for the "
+                          "distance between the grips",
+                          r.file, start)
+            : fmt::format("{}: the displacement begins at {:.4g} mm without a pull: it was taken for a "
+                          "position, and length_mm for the length there",
+                          r.file, start));
+}
+
+/// What the machine did before the record began, or cannot resolve.
+void warn_of_force(TensionCurve& curve) {
+    const TestRecord& r = curve.record;
+    const Cycle& first = curve.cycles.front();
+    const double largest = *std::max_element(r.force.begin(), r.force.end());
+    constexpr double much = 0.06;
+    if (first.peak > first.begin && !r.driven_by_force && r.force[first.begin] > much * largest)
+        curve.warnings.push_back(fmt::format(
+            "{}:{}: it pulls with {:.3g} N ({:.0f} % of the largest force) when the record begins: the "
+            "load cell was not set to zero, or the sample was pre-loaded and longer than length_mm by "
+            "an unknown amount",
+            r.file, r.line[first.begin], r.force[first.begin], 100.0 * r.force[first.begin] / largest));
+    const Cycle& cycle = curve.cycles[curve.cycle];
+    const double left = r.force[cycle.end - 1];
+    const bool is_back = r.displacement[cycle.end - 1] - curve.zero < 0.03 * r.displacement[cycle.peak];
+    if (is_back && cycle.unloads && !r.driven_by_force && left > much * largest)
+        curve.warnings.push_back(fmt::format(
+            "{}:{}: it still pulls with {:.3g} N ({:.0f} % of the largest force) when the clamp is back: the "
+            "load cell drifts or was not set to zero, and the fit cannot be trusted",
+            r.file, r.line[cycle.end - 1], left, 100.0 * left / largest));
+    constexpr std::size_t few = 20;
+    const std::set<double> different(r.force.begin(), r.force.end());
+    if (r.size() > 5 * few && different.size() < few)
+        curve.warnings.push_back(
+            fmt::format("{}: the force has {} different values only: export it with more digits, "
+                        "or take a smaller load cell",
+                        r.file, different.size()));
 }
 
 std::size_t choose_cycle(const TensionCurve& curve) {
@@ -162,7 +258,11 @@ void take_rows(TensionCurve& curve, double thickness) {
     const double area = test.width_mm * thickness;
     for (std::size_t i = begin; i < end; i += stride) {
         const double stretch = 1.0 + (r.displacement[i] - curve.zero) / curve.rest_length;
-        if (stretch < 1.0 || (test.pretension_n > 0.0 && r.force[i] < test.pretension_n)) continue;
+        // A length that was read may scatter about the rest length; a clamp that comes back too far makes
+        // folds.
+        if (stretch < (r.driven_by_force ? 0.9 : 1.0) ||
+            (test.pretension_n > 0.0 && r.force[i] < test.pretension_n))
+            continue;
         curve.stretch.push_back(stretch);
         curve.nominal_stress.push_back(r.force[i] / area);
         if (!r.width.empty()) curve.transverse.push_back(green_strain(r.width[i] / test.width_mm));
@@ -200,14 +300,18 @@ std::string TensionCurve::name() const {
 
 TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     TensionCurve curve{.test = test, .rest_length = test.length_mm};
-    const CsvTable table = read_csv_table(test.file);
-    curve.record =
-        read_record(table, {.columns = test.columns, .length_mm = test.length_mm, .width_mm = test.width_mm});
+    const CsvTable table = read_csv_table(test.file, test.specimen);
+    curve.record = read_record(table, {.columns = test.columns,
+                                       .length_mm = test.length_mm,
+                                       .width_mm = test.width_mm,
+                                       .specimen = test.specimen});
     curve.warnings = curve.record.warnings;
     if (curve.record.size() < fewest_rows)
         throw InputError(place(test), fmt::format("has {} rows of numbers; at least {} are needed",
                                                   curve.record.size(), fewest_rows));
+    leave_spikes_out(curve);
     flip_if_negative(curve);
+    set_position_to_zero(curve);
     curve.cycles = find_cycles(curve.record);
     if (curve.cycles.empty())
         throw InputError(place(test), "the displacement never changes",
@@ -220,6 +324,7 @@ TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     check_swapped(curve);
     check_widths(curve);
     warn_of_falls(curve);
+    warn_of_force(curve);
     if (curve.largest_stretch() < 1.0 + 0.8 * (test.prestretch - 1.0))
         curve.warnings.push_back(fmt::format(
             "{}: measured up to a stretch of {:.3f} only, used at {:.3g}: beyond the data the law is "

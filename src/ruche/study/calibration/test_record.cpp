@@ -9,6 +9,7 @@
 #include "ruche/core/suggest.hpp"
 #include "ruche/core/text_scan.hpp"
 #include "ruche/study/calibration/column_names.hpp"
+#include "ruche/study/calibration/csv_cells.hpp"
 
 namespace ruche {
 
@@ -52,8 +53,8 @@ std::string column_text(const CsvTable& table, std::size_t index) {
 /// Finds columns and their units in one table.
 class Mapping {
   public:
-    Mapping(const CsvTable& table, const ColumnOptions& options, TestRecord& record)
-        : table_(table), options_(options), record_(record) {}
+    Mapping(const CsvTable& table, const RecordContext& context, TestRecord& record)
+        : table_(table), options_(context.columns), specimen_(context.specimen), record_(record) {}
 
     std::optional<Column> find(Quantity quantity) {
         const std::string& wanted = wanted_name(quantity);
@@ -80,26 +81,44 @@ class Mapping {
 
     std::optional<std::size_t> by_name(Quantity quantity, bool unit_must_fit) const {
         int best = 0;
-        std::optional<std::size_t> found;
+        std::vector<std::size_t> found;  // of the same name, where specimens stand side by side
         for (std::size_t i = 0; i < table_.names.size(); ++i) {
             int score = name_score(quantity, table_.names[i]);
             const std::string unit = written_unit(i);
             if (unit_must_fit && !unit.empty() && quantity != Quantity::branch && !unit_scale(quantity, unit))
                 score = 0;
-            if (score <= best) continue;
+            if (score > best) found.clear();
+            if (score == 0 || score < best) continue;
             best = score;
-            found = i;
+            if (found.empty() || table_.names[found.front()] == table_.names[i]) found.push_back(i);
         }
-        return found;
+        if (found.empty()) return std::nullopt;
+        return found[of_specimen(found)];
+    }
+
+    /// Which of the columns with the same name.
+    std::size_t of_specimen(const std::vector<std::size_t>& columns) const {
+        if (columns.size() == 1) return 0;
+        const bool chosen = specimen_ > 0 && table_.specimens == 1;
+        if (chosen && static_cast<std::size_t>(specimen_) <= columns.size())
+            return static_cast<std::size_t>(specimen_ - 1);
+        std::vector<std::size_t> numbers;
+        for (const std::size_t i : columns) numbers.push_back(i + 1);
+        throw InputError(
+            header(),
+            fmt::format("the columns {} are all called \"{}\"", fmt::join(numbers, ", "),
+                        table_.names[columns.front()]),
+            "Of specimens side by side say which with specimen = 1, 2, ...; else give the column's "
+            "number in [columns].");
     }
 
     std::size_t chosen(Quantity quantity, const std::string& wanted) const {
         std::size_t number = 0;
         if (read_number(wanted, number)) {
-            if (number >= 1 && number <= table_.column_count()) return number - 1;
+            if (number >= 1 && number <= table_.column_count) return number - 1;
             throw InputError({.file = table_.file},
                              fmt::format("there is no column {} for the {}: the table has {}", number,
-                                         quantity_name(quantity), table_.column_count()));
+                                         quantity_name(quantity), table_.column_count));
         }
         for (std::size_t i = 0; i < table_.names.size(); ++i)
             if (folded(table_.names[i]) == folded(wanted)) return i;
@@ -145,6 +164,12 @@ class Mapping {
                                          column_text(table_, index), quantity_name(quantity)),
                              "Are columns swapped? Else give the unit as force_unit, displacement_unit or "
                              "width_unit in [columns].");
+        if (quantity == Quantity::displacement && index < table_.names.size() &&
+            names_strain(table_.names[index]))
+            throw InputError(
+                header(), fmt::format("{} has no unit", column_text(table_, index)),
+                "Is a strain of 1 in it 100 % or 1 %? Say displacement_unit = \"mm/mm\" or \"%\" in "
+                "[columns].");
         const std::string_view assumed = quantity == Quantity::force  ? "N"
                                          : quantity == Quantity::mass ? "g"
                                                                       : "mm";
@@ -157,6 +182,7 @@ class Mapping {
 
     const CsvTable& table_;
     const ColumnOptions& options_;
+    int specimen_;
     TestRecord& record_;
 };
 
@@ -182,7 +208,7 @@ Columns find_columns(Mapping& mapping, const CsvTable& table) {
     }
     if (!force || !way) {
         const std::string found = table.names.empty()
-                                      ? fmt::format("{} columns without names", table.column_count())
+                                      ? fmt::format("{} columns without names", table.column_count)
                                       : fmt::format("the columns \"{}\"", fmt::join(table.names, "\", \""));
         throw InputError(
             mapping.header(),
@@ -228,7 +254,7 @@ struct LeftOut {
 
 TestRecord read_record(const CsvTable& table, const RecordContext& context) {
     TestRecord record{.file = table.file};
-    Mapping mapping(table, context.columns, record);
+    Mapping mapping(table, context, record);
     const Columns columns = find_columns(mapping, table);
     record.driven_by_force = columns.is_mass;
     const auto value = [&](const CsvTable::Row& row, const Column& column, double whole) {
@@ -237,6 +263,9 @@ TestRecord read_record(const CsvTable& table, const RecordContext& context) {
     };
     LeftOut left_out;
     for (const CsvTable::Row& row : table.rows) {
+        // Beside a specimen that was recorded for longer.
+        if (cell_of(row, columns.force.index).empty() && cell_of(row, columns.displacement.index).empty())
+            continue;
         const double force = value(row, columns.force, 1.0);
         double displacement = value(row, columns.displacement, context.length_mm);
         if (columns.is_length && !columns.displacement.scale.relative) displacement -= context.length_mm;

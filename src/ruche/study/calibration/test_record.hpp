@@ -41,6 +41,7 @@ struct RecordContext {
     ColumnOptions columns;
     double length_mm = 0.0;  ///< gauge length: for displacements in % and for columns that hold the length
     double width_mm = 0.0;   ///< for widths in %
+    int specimen = 0;        ///< of several that stand side by side, from 1; 0: there is one only
 };
 
 /// Force and displacement (or hung mass and length) from a table, with their units. Rows with gaps or words

@@ -26,6 +26,7 @@ name = {}
 description = {}
 mode = "joint"
 prestretch = {}
+element_size_mm = {}
 
 [fabric]
 thickness_mm = {}
@@ -39,15 +40,19 @@ density_kg_per_m3 = {}
 )",
         card, curves.samples.prestretch, machine.noise, machine.hysteresis, machine.seed,
         toml_quoted(card + ", virtual tests"), toml_quoted("Simulated tests of the card " + card),
-        curves.samples.prestretch, m.fabric_thickness, m.fabric_areal_density, m.fabric_youngs_modulus,
-        m.neo_hookean_share, m.plastic_density);
+        curves.samples.prestretch, curves.samples.width / curves.samples.elements_across, m.fabric_thickness,
+        m.fabric_areal_density, m.fabric_youngs_modulus, m.neo_hookean_share, m.plastic_density);
 }
 
 std::string table_of(const VirtualCurve& curve, const VirtualSamples& s, const std::string& file) {
-    if (curve.test == "tension")
-        return fmt::format(
-            "\n[[tension]]\nfile = \"{}\"\nangle_deg = {}\nlength_mm = {}\nwidth_mm = {}\ngrips = \"{}\"\n",
-            file, curve.angle, s.length, s.width, s.grip_width > 0.0 ? "dogbone" : "wide");
+    if (curve.test == "tension") {
+        const std::string table =
+            fmt::format("\n[[tension]]\nfile = \"{}\"\nangle_deg = {}\nlength_mm = {}\nwidth_mm = {}\n", file,
+                        curve.angle, s.length, s.width);
+        if (s.grip_width == 0.0) return table + "grips = \"wide\"\n";
+        return table + fmt::format("grips = \"dogbone\"\ngrip_width_mm = {}\ngauge_length_mm = {}\n",
+                                   s.grip_width, s.gauge_length);
+    }
     if (curve.test == "shear")
         return fmt::format("\n[[shear]]\nfile = \"{}\"\nangle_deg = {}\nheight_mm = {}\nwidth_mm = {}\n",
                            file, curve.angle, s.shear_side, s.shear_side);
