@@ -55,7 +55,7 @@ TEST_CASE("nonlinear elimination: a vertex out of place is brought back and noth
         Eigen::VectorXd gradient = sheet.model.gradient(x);
         const double fell = eliminate(sheet.model, x, gradient);
         CHECK(fell > 0.0);
-        CHECK(std::abs(before - fell - sheet.model.energy(x)) < 1e-13 * before);  // rounding of the sum
+        CHECK(std::abs(before - fell - sheet.model.energy(x)) < 1e-13 * before);    // rounding of the sum
         CHECK((gradient - sheet.model.gradient(x)).cwiseAbs().maxCoeff() < 1e-11);  // rounding, N
     }
     // Round by round the neighbours take part too; in the end the spot is where it came from.
