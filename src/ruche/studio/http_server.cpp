@@ -42,9 +42,19 @@ bool is_one_of(const httplib::Request& request, const char* header, std::span<co
            std::find(allowed.begin(), allowed.end(), request.get_header_value(header)) != allowed.end();
 }
 
+/// As it is: the library would pack it with Brotli, for seconds, to send it to the same machine.
+void set_unpacked(httplib::Response& response, const std::string& body, const std::string& type) {
+    if (body.empty()) return response.set_content(body, type);
+    response.set_content_provider(body.size(), type,
+                                  [kept = body](std::size_t at, std::size_t size, httplib::DataSink& sink) {
+                                      return sink.write(kept.data() + at, size);
+                                  });
+}
+
 void send(httplib::Response& response, const HttpReply& reply) {
-    response.status = reply.status;
-    response.set_content(reply.body, reply.type);
+    if (reply.status != 200)
+        response.status = reply.status;  // else the library says 206 where a part was wanted
+    set_unpacked(response, reply.body, reply.type);
     response.set_header("Content-Security-Policy", reply.page      ? page_content
                                                    : reply.foreign ? foreign_content
                                                                    : no_content);
@@ -138,6 +148,11 @@ struct HttpServer::Parts {
 
     void set_up() {
         server.new_task_queue = [] { return new httplib::ThreadPool(threads); };
+        server.set_socket_options([](int socket) {
+            const int yes =
+                1;  // a port that was in use a moment ago may be taken, one that is in use may not
+            setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+        });
         server.set_keep_alive_max_count(1);
         server.set_read_timeout(silence_s);
         server.set_write_timeout(silence_s);
