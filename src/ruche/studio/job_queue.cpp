@@ -178,7 +178,8 @@ void JobQueue::run(Job& job) {
         job.outcome = outcome;
         job.error = error;
         job.order.scene = {};
-        change(job, !error.empty() ? "failed" : job.stop ? "cancelled" : "done");
+        const bool cut_short = job.is_preview() ? job.stop.load() : outcome == "interrupted";
+        change(job, !error.empty() ? "failed" : cut_short ? "cancelled" : "done");
     }
     if (!outcome.empty()) log_.publish("runs", "{}");
 }

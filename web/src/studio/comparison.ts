@@ -164,6 +164,7 @@ export class Comparison {
                 to.lookLike(from);
                 leading = false;
             });
+        left.look("home");  // it has half the width now
         right.lookLike(left);
     }
 }

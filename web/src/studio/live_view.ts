@@ -61,7 +61,7 @@ export class LiveView {
         this.job = job;
         this.panel.hidden = !job || (job.state !== "running" && job.state !== "waiting");
         if (!job) return;
-        const what = job.kind === "preview" ? "Preview on a coarse mesh" : `Releasing ${job.folder.replace(/\.out$/, "")}`;
+        const what = job.kind === "preview" ? "Preview" : `Releasing ${job.folder.replace(/\.out$/, "")}`;
         this.title.textContent = job.state === "waiting" ? `${what}: waits its turn` : what;
         const left = job.left_s === null ? "" : ` · about ${seconds(Math.max(1, Math.round(job.left_s)))} left`;
         this.details.textContent = job.state === "running" ? `${seconds(Math.round(10 * job.seconds) / 10)}${left} · ${job.phase === "release" ? job.text.split(":")[0]! : job.phase}` : "";

@@ -16,6 +16,8 @@ import { downloads, nameOf, ResultList } from "./results";
 import { Settings } from "./settings";
 
 const changePauseMs = 250;
+/** What a release writes unless the person says otherwise: the page shows the shape itself, sooner without a picture. */
+const forTheFolder = { "output.stl": true, "output.picture": false };
 
 /** The whole page: settings on the left, the print and its shape on the right, results below. */
 class Studio {
@@ -73,6 +75,7 @@ class Studio {
     // What the person does.
 
     private changed(): void {
+        ++this.asked;  // answers to what was set before come too late
         window.clearTimeout(this.timer);
         this.timer = window.setTimeout(() => {
             this.showBench();
@@ -98,9 +101,8 @@ class Studio {
     }
 
     private async start(kind: "release" | "preview"): Promise<void> {
-        window.clearTimeout(this.timer);
         const request = this.settings.request();
-        const values = kind === "release" ? { "output.stl": true, ...request.values } : request.values;
+        const values = kind === "release" ? { ...forTheFolder, ...request.values } : request.values;
         const start = kind === "release" ? this.goOn.value : "";
         try {
             const { id } = await post<{ id: number }>(`/api/${kind}`, { ...request, values, owner: this.owner, start });
@@ -168,7 +170,7 @@ class Studio {
 
     private async open(run: Run): Promise<void> {
         try {
-            const result = await this.load(run);
+            const result = { ...(await this.load(run)), title: nameOf(run) };
             const shared = attention();
             const stage = new Stage(result, shared);
             const element = h(

@@ -58,6 +58,7 @@ export function downloads(run: Run): HTMLElement {
 export class ResultList {
     readonly element: HTMLElement;
     private readonly body = h("tbody", {});
+    private readonly table: HTMLElement;
     private readonly compareButton: HTMLButtonElement;
     private readonly none = h("p", { class: "hint" }, "None yet. What the command line writes into this folder appears here, too.");
     private runs: Run[] = [];
@@ -67,12 +68,13 @@ export class ResultList {
     constructor(private readonly actions: ResultActions) {
         this.compareButton = h("button", { type: "button", disabled: true, click: () => this.compare() }, "Compare two");
         const head = h("tr", {}, ...["", "result", "", "size released", "curvature, 1/mm", "set", "when"].map((text) => h("th", {}, text)));
+        this.table = h("div", { class: "scroll", hidden: true }, h("table", {}, h("thead", {}, head), this.body));
         this.element = h(
             "section",
             { class: "card results", "aria-label": "results" },
             h("div", { class: "heading" }, h("h2", {}, "Results"), this.compareButton),
             this.none,
-            h("div", { class: "scroll" }, h("table", {}, h("thead", {}, head), this.body)),
+            this.table,
         );
     }
 
@@ -80,6 +82,7 @@ export class ResultList {
         this.runs = runs;
         this.chosen = this.chosen.filter((folder) => runs.some((run) => run.folder === folder));
         this.none.hidden = runs.length > 0;
+        this.table.hidden = runs.length === 0;
         this.fill();
     }
 
