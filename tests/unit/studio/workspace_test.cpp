@@ -13,9 +13,9 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A folder "work" beside a secret; "work/out" and "work/out.svg" are links that lead out.
-class Place {
+class Neighbourhood {
   public:
-    Place() : path_(fs::temp_directory_path() / ("ruche-workspace-" + std::to_string(getpid()))) {
+    Neighbourhood() : path_(fs::temp_directory_path() / ("ruche-workspace-" + std::to_string(getpid()))) {
         fs::create_directories(path_ / "work" / "run.out");
         write("secret.svg", "<svg/>");
         write("work/d.svg", "<svg/>");
@@ -26,7 +26,7 @@ class Place {
         fs::create_symlink(path_ / "secret.svg", path_ / "work" / "out.svg");
         fs::create_symlink(path_ / "work" / "d.svg", path_ / "work" / "in.svg");
     }
-    ~Place() { fs::remove_all(path_); }
+    ~Neighbourhood() { fs::remove_all(path_); }
 
     void write(const std::string& name, const std::string& text) const {
         std::ofstream(path_ / name) << text;
@@ -40,7 +40,7 @@ class Place {
 }  // namespace
 
 TEST_CASE("workspace: paths and links that lead out are refused, those that stay inside are followed") {
-    const Place place;
+    const Neighbourhood place;
     const Workspace workspace(place.work());
     CHECK(workspace.inside("d.svg") == fs::canonical(place.work()) / "d.svg");
     CHECK(workspace.inside("in.svg") == workspace.inside("d.svg"));
@@ -56,7 +56,7 @@ TEST_CASE("workspace: paths and links that lead out are refused, those that stay
 }
 
 TEST_CASE("workspace: only drawings, scenes and a result's files for people are served") {
-    const Place place;
+    const Neighbourhood place;
     const Workspace workspace(place.work());
     CHECK_FALSE(workspace.served_file("d.svg").empty());
     CHECK_FALSE(workspace.served_file("run.out/shape.obj").empty());
@@ -68,7 +68,7 @@ TEST_CASE("workspace: only drawings, scenes and a result's files for people are 
 }
 
 TEST_CASE("workspace: an uploaded drawing gets a plain name and never replaces another") {
-    const Place place;
+    const Neighbourhood place;
     const Workspace workspace(place.work());
     CHECK(workspace.keep_drawing("../../My drawing (2).svg", "<svg/>") == "My-drawing-2.svg");
     CHECK(workspace.keep_drawing("d.svg", "<svg/>") == "d.svg");
@@ -79,7 +79,7 @@ TEST_CASE("workspace: an uploaded drawing gets a plain name and never replaces a
 }
 
 TEST_CASE("workspace: a new result gets a folder that is neither there nor promised") {
-    const Place place;
+    const Neighbourhood place;
     const Workspace workspace(place.work());
     CHECK(workspace.new_result("run", {}) == "run-2.out");
     CHECK(workspace.new_result("run", {"run-2.out", "run-3.out"}) == "run-4.out");

@@ -90,8 +90,11 @@ Placing moved(const Placing& placing, const Eigen::Matrix<double, 7, 1>& step, c
 
 class Matcher {
   public:
-    Matcher(const SurfaceSearch& surface, const RegistrationOptions& options)
-        : surface_(surface), options_(options) {}
+    /// `rims`: whether points beyond a rim pull. They bring a scan onto the sheet from afar, but then noise
+    /// pulls it inwards at the rims that it has, and at a cut it has none (Turk, Levoy 1994 leave them out,
+    /// too).
+    Matcher(const SurfaceSearch& surface, const RegistrationOptions& options, bool rims)
+        : surface_(surface), options_(options), rims_(rims) {}
 
     /// Iterates from a start until it stands still.
     Candidate settle(const std::vector<Vec3>& points, Candidate at, int iterations) const {
@@ -140,7 +143,8 @@ class Matcher {
             const Vec3 normal = normal_of(surface_.triangles()[static_cast<std::size_t>(hit.triangle)]);
             // Beyond a rim the way back is not along the normal.
             const bool inside = std::abs(apart.dot(normal)) > 0.9 * apart.norm() || apart.norm() < 1e-9;
-            pairs[i] = {p, hit.point, inside ? normal : Vec3(apart.normalized()), apart.squaredNorm()};
+            const Vec3 direction = inside ? normal : rims_ ? Vec3(apart.normalized()) : Vec3(Vec3::Zero());
+            pairs[i] = {p, hit.point, direction, apart.squaredNorm()};
         }
         const std::size_t kept = kept_of(points.size());
         std::nth_element(pairs.begin(), pairs.begin() + static_cast<std::ptrdiff_t>(kept) - 1, pairs.end(),
@@ -178,6 +182,7 @@ class Matcher {
 
     const SurfaceSearch& surface_;
     RegistrationOptions options_;
+    bool rims_;
 };
 
 std::vector<Candidate> starts(std::span<const Vec3> scan, const std::vector<Vec3>& surface) {
@@ -220,7 +225,7 @@ Registration refine_registration(std::span<const Vec3> scan, const SurfaceSearch
     constexpr std::size_t most = 40000;
     constexpr int iterations = 60;
     const Candidate end =
-        Matcher(surface, options).settle(thinned(scan, most), {start.placing, start.rms}, iterations);
+        Matcher(surface, options, false).settle(thinned(scan, most), {start.placing, start.rms}, iterations);
     return {.placing = end.placing, .rms = end.rms, .runner_up = start.runner_up};
 }
 
@@ -230,7 +235,9 @@ Registration register_scan(std::span<const Vec3> scan, const SurfaceSearch& surf
     for (const Corners& t : surface.triangles()) middles.emplace_back((t[0] + t[1] + t[2]) / 3.0);
     constexpr std::size_t target_points = 2000;
     std::vector<Candidate> list = starts(scan, thinned(middles, target_points));
-    const Matcher matcher(surface, options);
+    RegistrationOptions rigid = options;
+    rigid.free_scale = false;  // from afar a scan that may shrink shrinks to a point
+    const Matcher matcher(surface, rigid, true);
     struct Round {
         std::size_t points;
         int iterations;
