@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-LAYERS = ["core", "geometry", "pattern", "meshing", "material", "energy", "statics", "scene", "output", "study", "cli"]
+LAYERS = ["core", "geometry", "pattern", "meshing", "material", "energy", "statics", "scene", "output", "study", "studio", "cli"]
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]', re.MULTILINE)
 SOURCES = {".hpp", ".cpp"}
 

@@ -2,6 +2,7 @@ import { resultInDocument, type Result } from "./data/result";
 import { h } from "./dom";
 import { alternatives, convergence, distribution, energy } from "./panels/charts";
 import { header } from "./panels/header";
+import { scanComparison } from "./panels/scan_comparison";
 import { assumptions, parameters } from "./panels/parameters";
 import { stripTable } from "./panels/strips";
 import { attention } from "./signal";
@@ -45,6 +46,7 @@ function show(result: Result): void {
         h(
             "main",
             {},
+            result.comparison ? scanComparison(result.comparison) : "",
             stripTable(result, shared),
             h("div", { class: "column" }, distribution(result, shared), energy(result)),
             h("div", { class: "column" }, convergence(result), alternatives(result) ?? "", assumptions(result) ?? ""),

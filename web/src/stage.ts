@@ -55,6 +55,7 @@ export class Stage {
             this.measure.addView(this.views[placing], placing, this.hosts[placing]);
             this.listen(placing);
         }
+        if (result.sheet.scanDistance) this.state.colour.set("scan");
         this.stop = new Signal(result.film ? lastStop(result.film) : 0);
         this.element = this.layOut();
         this.follow();
@@ -72,6 +73,10 @@ export class Stage {
     /** Fits both views; to be called when the element has its place in the page. */
     begin(): void {
         for (const view of Object.values(this.views)) view.show(this.model);
+    }
+
+    dispose(): void {
+        for (const view of Object.values(this.views)) view.dispose();
     }
 
     /** At once, for printing. */
@@ -302,7 +307,8 @@ export class Stage {
     }
 }
 
-function drawScale(bar: HTMLElement, mmPerPixel: number): void {
+/** Makes a bar as long as a round number of millimetres. */
+export function drawScale(bar: HTMLElement, mmPerPixel: number): void {
     if (!(mmPerPixel > 0)) return;
     const longest = 120 * mmPerPixel;
     const decade = 10 ** Math.floor(Math.log10(longest));

@@ -54,7 +54,9 @@ int run(int count, char** arguments) {
     ruche::Action action;
     ruche::add_simulate(program, action);
     ruche::add_check(program, action);
+    ruche::add_studio(program, action);
     ruche::add_render(program, action);
+    ruche::add_compare(program, action);
     ruche::add_pattern(program, action);
     ruche::add_bench(program, action);
     ruche::add_calibrate(program, action);

@@ -17,7 +17,6 @@
 #include "ruche/output/html_report.hpp"
 #include "ruche/output/metrics.hpp"
 #include "ruche/output/result_folder.hpp"
-#include "ruche/scene/release_film.hpp"
 
 namespace ruche {
 
@@ -110,14 +109,6 @@ static ExitCode exit_code(const Result& result) {
     if (end.status == SolveStatus::interrupted) return ExitCode::interrupted;
     if (result.alternatives && result.alternatives->interrupted) return ExitCode::interrupted;
     return end.status == SolveStatus::converged && end.stable ? ExitCode::converged : ExitCode::unfinished;
-}
-
-/// For the page's slider.
-static void add_film(Result& result, const Control& control) {
-    if (!result.scene.output.page || !can_write_page()) return;
-    const auto begin = std::chrono::steady_clock::now();
-    result.film = film_release(result, control);
-    result.seconds["film"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 static ExitCode run(const SimulateArguments& arguments) {

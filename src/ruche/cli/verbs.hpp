@@ -19,6 +19,8 @@ void add_check(CLI::App& program, Action& action);
 void add_pattern(CLI::App& program, Action& action);
 void add_bench(CLI::App& program, Action& action);
 void add_calibrate(CLI::App& program, Action& action);
+void add_compare(CLI::App& program, Action& action);
+void add_studio(CLI::App& program, Action& action);
 void add_cards(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_virtual_test(CLI::App& program, Action& action);

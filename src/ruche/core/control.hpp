@@ -15,6 +15,8 @@ struct Progress {
     std::string text;        ///< one line for a person, such as "iteration 4: residual 2.1e-03 N"
 };
 
+struct Iterate;  // statics/iterate.hpp; only handed on here
+
 /// What a caller gives to a long computation: where to report, a flag that asks it to stop at the next safe
 /// point, and when its time is over.
 struct Control {
@@ -22,6 +24,9 @@ struct Control {
     std::function<void(const Progress&)> report;
     const std::atomic<bool>* stop = nullptr;
     Clock::time_point deadline = Clock::time_point::max();
+    /// Shown the shapes that a release passes through, the flat sheet first. Called on the thread that
+    /// solves, which waits for it.
+    std::function<void(const Iterate&)> watch;
 
     void say(const Progress& progress) const {
         if (report) report(progress);

@@ -28,6 +28,15 @@ struct AxisBox {
         add(box.low);
         add(box.high);
     }
+    /// From a point to the nearest of the box, squared.
+    Scalar squared_distance(const Point& p) const {
+        Scalar sum = 0;
+        for (int k = 0; k < 3; ++k) {
+            const Scalar beyond = std::max({low[k] - p[k], p[k] - high[k], Scalar{0}});
+            sum += beyond * beyond;
+        }
+        return sum;
+    }
     bool meets(const AxisBox& other) const {
         return low[0] <= other.high[0] && other.low[0] <= high[0] && low[1] <= other.high[1] &&
                other.low[1] <= high[1] && low[2] <= other.high[2] && other.low[2] <= high[2];
@@ -67,6 +76,36 @@ class BoxTree {
                 if (u > t && boxes_[u].meets(boxes_[t])) visit(u);
             }
         }
+    }
+
+    /// The item whose `squared_distance(t)` from p is the smallest, asked only of those whose boxes are near
+    /// enough; -1 when none is nearer than the square root of `within`.
+    template <class SquaredDistance>
+    int nearest(const typename Box::Point& p, Scalar within, const SquaredDistance& squared_distance) const {
+        int best = -1;
+        if (nodes_.empty()) return best;
+        std::array<int, 64> stack;
+        int top = 0;
+        stack[top++] = 0;
+        while (top > 0) {
+            const int self = stack[--top];
+            const Node& node = nodes_[self];
+            if (node.box.squared_distance(p) >= within) continue;
+            if (node.right > 0) {
+                const bool right_first =
+                    nodes_[node.right].box.squared_distance(p) < nodes_[self + 1].box.squared_distance(p);
+                stack[top++] = right_first ? self + 1 : node.right;
+                stack[top++] = right_first ? node.right : self + 1;
+                continue;
+            }
+            for (int i = node.begin; i < node.end; ++i) {
+                const Scalar distance = squared_distance(order_[i]);
+                if (distance >= within) continue;
+                within = distance;
+                best = order_[i];
+            }
+        }
+        return best;
     }
 
     /// Neighbours in this order are neighbours in space.

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t longest_file = std::size_t{1} << 30U;
 
-constexpr const char* obj_advice = "A layout as OBJ has lines \"v x y z\" and triangles \"f a b c\".";
+constexpr const char* obj_advice = "A mesh as OBJ has lines \"v x y z\" and triangles \"f a b c\".";
 constexpr const char* table_advice =
     "The table has the columns triangle (in the OBJ's order, from 0), front_mm and back_mm: printed "
     "thickness, "
@@ -28,7 +28,9 @@ int vertex_of(std::string_view corner, std::size_t vertices) {
 
 class ObjReader {
   public:
-    explicit ObjReader(const std::string& path) : path_(path) {}
+    enum class Faces { triangles, polygons };
+
+    ObjReader(const std::string& path, Faces faces) : path_(path), faces_(faces) {}
 
     RawMesh read() {
         const std::string text = read_file(path_, "OBJ mesh", longest_file);
@@ -58,18 +60,16 @@ class ObjReader {
     }
 
     void read_face(std::string_view line) {
-        Triangle triangle = {};
-        int corners = 0;
+        std::vector<int> corners;
         for (std::string_view word = take_word(line); !word.empty(); word = take_word(line)) {
             if (word.starts_with('#')) break;
             const int vertex = vertex_of(word, mesh_.vertices.size());
             if (vertex < 0) fail(fmt::format("\"{}\" is not a vertex", word.substr(0, 40)));
-            if (corners < 3) triangle[corners] = vertex;
-            ++corners;
+            corners.push_back(vertex);
         }
-        if (corners != 3)
-            fail(fmt::format("a face with {} corners; a layout mesh has triangles only", corners));
-        mesh_.triangles.push_back(triangle);
+        if (faces_ == Faces::triangles && corners.size() != 3)
+            fail(fmt::format("a face with {} corners; a layout mesh has triangles only", corners.size()));
+        append_fan(mesh_, corners);
     }
 
     [[noreturn]] void fail(const std::string& problem) const {
@@ -77,6 +77,7 @@ class ObjReader {
     }
 
     const std::string& path_;
+    Faces faces_;
     int line_ = 0;
     RawMesh mesh_;
 };
@@ -130,8 +131,12 @@ void read_thickness(const std::string& path, RawMesh& mesh) {
 
 }  // namespace
 
+RawMesh read_obj_surface(const std::string& path) {
+    return ObjReader(path, ObjReader::Faces::polygons).read();
+}
+
 RawMesh read_obj(const std::string& path, const std::string& thickness_table) {
-    RawMesh mesh = ObjReader(path).read();
+    RawMesh mesh = ObjReader(path, ObjReader::Faces::triangles).read();
     if (thickness_table.empty())
         throw InputError({.file = path}, "an OBJ says nothing about what is printed",
                          std::string("Name a CSV file as pattern.thickness_table. ") + table_advice);

@@ -29,4 +29,12 @@ RawMesh read_ply(const std::string& path);
 /// front_mm and, where wanted, back_mm; triangles that are not listed are bare. Throws InputError.
 RawMesh read_obj(const std::string& path, const std::string& thickness_table);
 
+/// Any surface, as scanners write them: OBJ, PLY, or STL as text or binary; polygons are cut into triangles,
+/// and a file may hold points alone. Without print. Throws InputError.
+RawMesh read_surface(const std::string& path);
+
+/// For the readers: polygons cut into a fan of triangles; fewer than three corners make none.
+void append_fan(RawMesh& mesh, const std::vector<int>& corners);
+RawMesh read_obj_surface(const std::string& path);
+
 }  // namespace ruche

@@ -8,6 +8,9 @@ namespace ruche {
 /// where the data belongs. Empty where the program was built without npm.
 std::string_view page_template();
 
+/// The studio's page, bundled in the same way.
+std::string_view studio_page();
+
 inline constexpr std::string_view page_data_mark = "<!--DATA-->";
 
 }  // namespace ruche

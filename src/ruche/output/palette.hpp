@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 namespace ruche {
 
@@ -19,6 +20,17 @@ struct Colour {
         return result;
     }
 };
+
+/// "#rrggbb".
+inline std::string css(const Colour& colour) {
+    constexpr char digits[] = "0123456789abcdef";
+    std::string text = "#";
+    for (const unsigned char part : colour.srgb) {
+        text += digits[part >> 4U];
+        text += digits[part & 15U];
+    }
+    return text;
+}
 
 /// The colours of everything that shows a result, so that a picture, a page and a viewer agree.
 namespace palette {

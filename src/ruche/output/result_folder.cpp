@@ -4,14 +4,17 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <system_error>
 
 #include "ruche/core/document.hpp"
+#include "ruche/output/html_report.hpp"
 #include "ruche/output/report.hpp"
 #include "ruche/output/write_outputs.hpp"
+#include "ruche/scene/release_film.hpp"
 #include "ruche/scene/state.hpp"
 
 namespace ruche {
@@ -55,6 +58,13 @@ static void remove_alternatives(const std::string& folder, int first) {
     for (int number = first; fs::exists(folder_of(folder, number), ignored); ++number)
         remove_outputs(folder_of(folder, number));
     fs::remove(fs::path(folder_of(folder, 1)).parent_path(), ignored);  // when it is empty
+}
+
+void add_film(Result& result, const Control& control) {
+    if (!result.scene.output.page || !can_write_page()) return;
+    const auto begin = std::chrono::steady_clock::now();
+    result.film = film_release(result, control);
+    result.seconds["film"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 std::vector<std::string> write_result(const Result& result, const std::string& folder,

@@ -16,6 +16,10 @@ void check_result_folder(const std::string& folder);
 /// Whether the folder holds the result of a run that came to its end.
 bool holds_finished_result(const std::string& folder);
 
+/// Makes the film for the page's slider, where the scene asks for one and the program can write the page;
+/// says in the result how long that took.
+void add_film(Result& result, const Control& control = {});
+
 /// `write_outputs`, but an interrupted result does not replace a finished one: then only state.ruche is
 /// written. Returns the paths written. Throws std::runtime_error when the disk does not take it; the earlier
 /// result is then still there. Alternatives of an earlier result that are not in this one's list are removed.

@@ -31,6 +31,7 @@ struct SurfaceFields {
     std::vector<double> stretch_min;
     std::vector<char> passes_through;    ///< 1: the sheet passes through itself there
     std::vector<double> energy_density;  ///< mJ per mm^2 of layout; empty when not given
+    std::vector<double> scan_distance;   ///< mm, per vertex, to what was made; empty without a scan
 };
 
 /// Computes the fields of a result; `energy_density` (one value per triangle, or none) is passed through.

@@ -22,9 +22,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array all_names = {"shape.obj",   "shape.mtl",   "shape.ply",  "shape.vtu",  "layout.obj",
-                                  "layout.ply",  "layout.vtu",  "shape.glb",  "scene.toml", "state.ruche",
-                                  "picture.png", "report.html", "report.json"};
+constexpr std::array all_names = {"shape.obj",   "shape.mtl",   "shape.ply",   "shape.vtu",  "layout.obj",
+                                  "layout.ply",  "layout.vtu",  "shape.glb",   "shape.stl",  "scene.toml",
+                                  "state.ruche", "picture.png", "report.html", "report.json"};
 
 /// A file to write: its name, and how its contents are made when its turn comes.
 struct Output {
@@ -51,6 +51,7 @@ std::vector<Output> outputs(const Result& result, const std::string& folder, con
         list.push_back({"layout.vtu", [&] { return to_vtu(layout); }});
     }
     if (wanted.glb) list.push_back({"shape.glb", [&] { return to_glb(result); }});
+    if (wanted.stl) list.push_back({"shape.stl", [&] { return to_stl(shape); }});
     if (wanted.picture)
         list.push_back({"picture.png", [&] {
                             return to_png(draw_picture(result, {.width_px = wanted.picture_width_px,

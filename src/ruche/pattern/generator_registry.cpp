@@ -72,7 +72,7 @@ std::vector<GeneratorOption> describe_options() {
                             : about.kind == FieldKind::boolean ? "true | false"
                                                                : range_text(about);
         result.push_back({std::string(about.key), to_string(get(defaults, field)), std::string(about.unit),
-                          std::move(range), std::string(about.meaning)});
+                          std::move(range), std::string(about.meaning), about});
     }
     return result;
 }

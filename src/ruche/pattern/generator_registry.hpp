@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ruche/core/error.hpp"
+#include "ruche/core/fields.hpp"
 #include "ruche/pattern/generated_pattern.hpp"
 
 namespace ruche {
@@ -17,6 +18,7 @@ struct GeneratorOption {
     std::string unit;
     std::string range;  ///< "[0.1, 50]", "butt | round", or ""
     std::string meaning;
+    FieldInfo field;  ///< kind and bounds, for a form
 };
 
 struct GeneratorInfo {

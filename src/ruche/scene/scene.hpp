@@ -76,6 +76,7 @@ struct OutputOptions {
     bool ply = true;
     bool vtu = true;
     bool glb = true;
+    bool stl = false;
     bool picture = true;
     bool page = true;
     int film_frames = 0;

@@ -137,6 +137,7 @@ std::span<const Field<OutputOptions>> fields<OutputOptions>() {
         {"ply", &O::ply, "", -infinity, infinity, "Write the shape as PLY, with values per face and vertex."},
         {"vtu", &O::vtu, "", -infinity, infinity, "Write the shape as VTU (ParaView), with all fields."},
         {"glb", &O::glb, "", -infinity, infinity, "Write the shape as binary glTF, in metres, with colours."},
+        {"stl", &O::stl, "", -infinity, infinity, "Write the bare surface of the shape as STL."},
         {"picture", &O::picture, "", -infinity, infinity, "Write a PNG of the drawing and the shape."},
         {"page", &O::page, "", -infinity, infinity,
          "Write report.html, a page for the browser with drawing, shape, strips and all numbers in it."},

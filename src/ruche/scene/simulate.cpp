@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 
 #include "ruche/core/parallel.hpp"
@@ -10,6 +11,7 @@
 #include "ruche/scene/build.hpp"
 #include "ruche/scene/check_scene.hpp"
 #include "ruche/scene/release.hpp"
+#include "ruche/statics/iterate.hpp"
 
 namespace ruche {
 namespace {
@@ -45,6 +47,16 @@ std::string self_intersection_warning(const Result& result) {
         carrier(result.layout, first.triangles[1]));
 }
 
+/// The sheet as it is printed, before anything moves.
+void show_flat(const Model& model, const Control& control) {
+    if (!control.watch) return;
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
+    for (int v = 0; v < model.vertex_count(); ++v)
+        x.segment<2>(3 * v) = model.input().mesh.vertices[static_cast<std::size_t>(v)];
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    control.watch({.sheet = model.input(), .x = x, .energy = unknown, .residual = unknown});
+}
+
 /// A run before its release: what all shapes of the scene have in common.
 struct Prepared {
     Result result;
@@ -71,6 +83,7 @@ Prepared prepare(const Scene& scene, const Control& control) {
                  std::to_string(mesh.triangle_count()) + " triangles, " +
                      std::to_string(mesh.vertex_count()) + " vertices"});
     result.assumptions = assumptions(scene, result.layout);
+    show_flat(model, control);
     return {std::move(result), std::move(model), watch};
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ruche/core/memory.hpp"
+#include "ruche/statics/iterate.hpp"
 #include "ruche/statics/starts.hpp"
 #include "ruche/statics/tangle.hpp"
 
@@ -183,6 +184,12 @@ void Newton::report() const {
                   fmt::format("iteration {}: energy {:.6f} mJ, residual {:.1e} N, last turn {:.1e} rad, {} "
                               "factorisations",
                               iterations_, terms_.total(), residual(), rotation_, system_.factorizations())});
+    if (control_.watch)
+        control_.watch({.sheet = model().input(),
+                        .x = x_,
+                        .iteration = iterations_,
+                        .energy = terms_.total(),
+                        .residual = residual()});
 }
 
 void Newton::announce() const {

@@ -39,6 +39,16 @@ const sides = ["bare fabric", "front", "back", "both sides"];
 
 const definitions: Definition[] = [
     {
+        id: "scan",
+        label: "Distance to the scan",
+        unit: "mm",
+        about: "How far what was made lies outside the simulated sheet (positive) or inside; grey where the scan has nothing",
+        map: diverging,
+        centre: 0,
+        on: "vertex",
+        values: (s) => s.scanDistance,
+    },
+    {
         id: "thickness",
         label: "Print thickness",
         unit: "mm",
@@ -166,7 +176,8 @@ export class Fields {
     constructor(private readonly result: Result) {}
 
     list(): { id: string; label: string }[] {
-        const without = this.result.sheet.energyDensity ? [] : ["energy"];
+        const { energyDensity, scanDistance } = this.result.sheet;
+        const without = [!energyDensity && "energy", !scanDistance && "scan"];
         return definitions.filter(({ id }) => !without.includes(id)).map(({ id, label }) => ({ id, label }));
     }
 

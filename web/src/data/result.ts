@@ -31,6 +31,8 @@ export interface ReleasedSheet extends Sheet {
     stretchMin: Float32Array;
     /** Per triangle, mJ per mm² of layout; absent when it was not computed. */
     energyDensity?: Float32Array;
+    /** Per vertex: to a scan of what was made, mm; not a number where that has nothing. */
+    scanDistance?: Float32Array;
     /** Per triangle: 1 where the sheet passes through itself. */
     passesThrough: Uint8Array;
 }
@@ -61,6 +63,22 @@ export interface Result {
     colours: Record<"fabric" | "plasticFront" | "plasticBack" | "alarm", string>;
     sheet: ReleasedSheet;
     film?: Film;
+    comparison?: ScanComparison;
+}
+
+/** What `ruche compare` found; compare.json in docs/file-formats.md. */
+export interface ScanComparison {
+    scan: string;
+    unit: string;
+    unit_guessed: boolean;
+    skin: string;
+    points: number;
+    rms_mm: number;
+    mean_mm: number;
+    percentiles_mm: Record<string, number>;
+    covered: number;
+    placing: { scale: number };
+    warnings: string[];
 }
 
 /** The page's own data beside report.json. */
@@ -74,6 +92,7 @@ export interface PageData {
     colours: { fabric: string; plastic_front: string; plastic_back: string; alarm: string };
     arrays: Record<string, ArrayInfo>;
     film?: { frames: { share: number; prestretch: [number, number] }[] };
+    comparison?: ScanComparison;
 }
 
 function strips(arrays: PackedArrays, name: string): Int32Array {
@@ -82,7 +101,7 @@ function strips(arrays: PackedArrays, name: string): Int32Array {
     return Int32Array.from(raw, (strip) => (strip === none ? -1 : strip));
 }
 
-function readSheet(arrays: PackedArrays, prefix: string): Sheet {
+export function readSheet(arrays: PackedArrays, prefix: string): Sheet {
     const triangles = Uint32Array.from(arrays.integers(prefix + "triangles"));
     const layout = arrays.numbers(prefix + "layout_mm");
     return {
@@ -123,6 +142,7 @@ export function readResult(report: Report, page: PageData, base64: string): Resu
     };
     if (arrays.has("energy_density_mJ_per_mm2"))
         sheet.energyDensity = arrays.numbers("energy_density_mJ_per_mm2");
+    if (arrays.has("scan_distance_mm")) sheet.scanDistance = arrays.numbers("scan_distance_mm");
     return {
         title: page.title,
         details: page.details,
@@ -139,13 +159,14 @@ export function readResult(report: Report, page: PageData, base64: string): Resu
         },
         sheet,
         film: readFilm(page, arrays),
+        comparison: page.comparison,
     };
 }
 
-/** The result that stands in this very document. The text of the arrays is dropped afterwards. */
-export function resultInDocument(): Result {
+/** The result that stands in a document: this one, or one that was fetched. The text of the arrays is dropped. */
+export function resultInDocument(from: Document = document): Result {
     const text = (id: string) => {
-        const element = document.getElementById(id);
+        const element = from.getElementById(id);
         if (!element) throw new Error(`this page has no data: ${id} is missing`);
         const content = element.textContent ?? "";
         element.remove();

@@ -59,7 +59,10 @@ export class View {
     private model: SheetModel | undefined;
     private box = new Box3();
     private asked = false;
+    private gone = false;
+    private readonly resizing = new ResizeObserver(() => this.resize());
     private readonly drawn: (() => void)[] = [];
+    private readonly turned: (() => void)[] = [];
 
     constructor(
         private readonly host: HTMLElement,
@@ -86,8 +89,33 @@ export class View {
         }
         this.highlights = new Highlights(this.group, () => this.draw());
         this.controls = this.makeControls();
-        new ResizeObserver(() => this.resize()).observe(host);
+        this.resizing.observe(host);
         this.resize();
+    }
+
+    /** Gives the graphics memory back: a browser draws only so many views at a time. */
+    dispose(): void {
+        this.resizing.disconnect();
+        this.controls.dispose();
+        this.mesh?.removeFromParent();
+        this.material.dispose();
+        this.renderer.dispose();
+        this.renderer.forceContextLoss();
+        this.gone = true;
+        this.canvas.remove();
+    }
+
+    /** Looks from where another view does. */
+    lookLike(other: View): void {
+        this.camera.position.copy(other.camera.position);
+        this.controls.target.copy(other.controls.target);
+        if (this.camera instanceof PerspectiveCamera && other.camera instanceof PerspectiveCamera) {
+            this.camera.near = other.camera.near;
+            this.camera.far = other.camera.far;
+            this.camera.updateProjectionMatrix();
+        }
+        this.controls.update();
+        this.draw();
     }
 
     /** Shows a sheet. `keepCamera` where it takes the place of another one of about the same extent. */
@@ -109,6 +137,11 @@ export class View {
         this.draw();
     }
 
+    /** Tells when somebody looks from elsewhere. */
+    onTurn(listener: () => void): void {
+        this.turned.push(listener);
+    }
+
     onDraw(listener: () => void): void {
         this.drawn.push(listener);
     }
@@ -122,6 +155,7 @@ export class View {
     /** For printing and for measuring: without waiting for the next frame. */
     drawNow(): void {
         this.asked = false;
+        if (this.gone) return;
         this.renderer.render(this.scene, this.camera);
         for (const listener of this.drawn) listener();
     }
@@ -260,7 +294,10 @@ export class View {
             controls.mouseButtons = { LEFT: 2, MIDDLE: 1, RIGHT: 2 };
             controls.touches = { ONE: 1, TWO: 2 };
         }
-        controls.addEventListener("change", () => this.draw());
+        controls.addEventListener("change", () => {
+            this.draw();
+            for (const listener of this.turned) listener();
+        });
         return controls;
     }
 

@@ -1,0 +1,394 @@
+"""The studio's server, spoken to directly: what it answers, and what it must refuse."""
+
+import json
+import os
+import random
+import re
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+PROGRAM = os.environ["RUCHE_PROGRAM"]
+SANITIZED = "RUCHE_SANITIZED" in os.environ
+FUZZ_SECONDS = float(os.environ.get("RUCHE_FUZZ_SECONDS", "8"))
+DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">
+<path id="strip" d="M 4 5 H 16" stroke="#d9480f" stroke-width="1" fill="none"/></svg>"""
+SECRET = "what nobody may read"
+
+
+class Studio:
+    """A running server in a folder of its own, beside a secret that it must not give away."""
+
+    def __init__(self, place):
+        self.folder = place / "work"
+        self.folder.mkdir()
+        (place / "secret.svg").write_text(DRAWING.replace("strip", SECRET))
+        (place / "secret.toml").write_text(SECRET)
+        (self.folder / "d.svg").write_text(DRAWING)
+        (self.folder / "link.svg").symlink_to(place / "secret.svg")
+        (self.folder / "up").symlink_to(place)
+        self.process = subprocess.Popen([PROGRAM, "studio", self.folder, "--no-browser"], stdout=subprocess.PIPE, text=True)
+        line = self.process.stdout.readline()
+        self.port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", line).group(1))
+
+    def send(self, raw, timeout=20):
+        """The bytes that come back until the server closes."""
+        with socket.create_connection(("127.0.0.1", self.port), timeout) as connection:
+            try:
+                connection.sendall(raw if isinstance(raw, bytes) else raw.encode())
+            except (BrokenPipeError, ConnectionResetError):
+                pass  # refused while we still talk
+            answer = b""
+            try:
+                while piece := connection.recv(65536):
+                    answer += piece
+            except ConnectionResetError:
+                pass
+            return answer
+
+    def request(self, method, target, body=None, **headers):
+        """Status and body of one request."""
+        payload = body.encode() if isinstance(body, str) else body or b""
+        lines = {"Host": f"127.0.0.1:{self.port}"}
+        if body is not None:
+            lines |= {"Content-Type": "application/json", "Content-Length": str(len(payload))}
+        lines |= {key.replace("_", "-"): value for key, value in headers.items()}
+        head = f"{method} {target} HTTP/1.1\r\n" + "".join(f"{k}: {v}\r\n" for k, v in lines.items() if v is not None)
+        answer = self.send(head.encode() + b"\r\n" + payload)
+        top, _, rest = answer.partition(b"\r\n\r\n")
+        self.headers = top.decode()
+        return int(top.split()[1]) if top else 0, rest
+
+    def get(self, target, **headers):
+        return self.request("GET", target, **headers)
+
+    def post(self, target, value, **headers):
+        status, body = self.request("POST", target, json.dumps(value), **headers)
+        return status, json.loads(body)
+
+    def alive(self):
+        return self.process.poll() is None and self.get("/api/jobs")[0] == 200
+
+    def finished(self, job, seconds=120):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            state = next(j for j in json.loads(self.get("/api/jobs")[1]) if j["id"] == job)
+            if state["state"] not in ("waiting", "running"):
+                return state
+            time.sleep(0.1)
+        raise AssertionError("the job does not end")
+
+    def close(self):
+        self.process.send_signal(signal.SIGTERM)
+        return self.process.wait(30)
+
+
+@pytest.fixture
+def studio(tmp_path):
+    made = Studio(tmp_path)
+    yield made
+    if made.process.poll() is None:
+        assert made.close() == 0
+
+
+SCENE = {"base": {"svg": "d.svg"}, "values": {"fabric.margin_mm": 1, "output.picture": False}, "rules": []}
+
+
+def test_page_form_and_drawing_are_served(studio):
+    status, page = studio.get("/")
+    assert status == 200 and b"<!doctype html>" in page[:200]
+    assert "Content-Security-Policy: default-src 'none'" in studio.headers and "nosniff" in studio.headers
+    form = json.loads(studio.get("/api/form")[1])
+    assert form["drawings"] == ["d.svg"]  # a link is none of the folder's own
+    assert {g["name"] for g in form["generators"]} >= {"radial", "strip"}
+    status, drawing = studio.post("/api/drawing", SCENE)
+    assert status == 200 and drawing["strips"][0]["thickness_mm"] == 0.6
+    assert drawing["box"] == pytest.approx([3, 3.5, 17, 6.5], abs=0.02)
+    assert drawing["marks"] == [{"match": "#d9480f", "kind": "colour", "count": 1}]
+
+
+def test_a_rule_and_a_value_change_the_drawing_and_mistakes_name_their_key(studio):
+    rules = [{"match": "#d9480f", "thickness_mm": 0.9, "side": "back"}]
+    _, drawing = studio.post("/api/drawing", SCENE | {"rules": rules})
+    assert (drawing["strips"][0]["thickness_mm"], drawing["strips"][0]["side"]) == (0.9, "back")
+    status, answer = studio.post("/api/drawing", SCENE | {"values": {"fabric.prestretch": 4}})
+    assert status == 422 and answer["error"]["key"] == "fabric.prestretch"
+    assert "[1, 3]" in answer["error"]["message"]
+    _, answer = studio.post("/api/drawing", {"base": {"generator": "radial"}, "values": {"pattern.options.inner_mm": "900"}})
+    assert answer["error"]["key"] == "pattern.options.inner_mm", answer
+
+
+def test_a_release_leaves_a_result_that_the_command_line_reads_and_the_other_way(studio):
+    status, answer = studio.post("/api/release", SCENE | {"values": SCENE["values"] | {"output.stl": True}})
+    assert status == 200
+    assert studio.finished(answer["id"])["outcome"] == "converged"
+    again = [PROGRAM, "simulate", "d.out/scene.toml", "-o", "by hand", "--start", "d.out", "--quiet"]
+    subprocess.run(again, cwd=studio.folder, check=True)
+    runs = {run["folder"]: run for run in json.loads(studio.get("/api/runs")[1])}
+    assert set(runs) == {"d.out", "by hand"}
+    assert runs["d.out"]["summary"]["energy_mJ"] == pytest.approx(runs["by hand"]["summary"]["energy_mJ"])
+    status, difference = studio.get("/api/difference?a=d.out&b=by%20hand")
+    assert status == 200 and json.loads(difference)["rms_mm"] < 1e-6
+    for name in "report.html", "shape.obj", "shape.stl", "shape.glb", "scene.toml", "drawing.svg":
+        assert studio.get(f"/files/d.out/{name}")[0] == 200, name
+    assert studio.get("/files/d.out/state.ruche")[0] == 404
+    _, answer = studio.post("/api/release", SCENE | {"start": "d.out"})
+    assert studio.finished(answer["id"])["folder"] == "d-2.out"
+
+
+def test_a_report_cannot_use_the_server_that_hands_it_out(studio):
+    (studio.folder / "evil.out").mkdir()
+    (studio.folder / "evil.out/report.json").write_text("{}")
+    (studio.folder / "evil.out/report.html").write_text("<script>fetch('/api/jobs')</script>")
+    assert studio.get("/files/evil.out/report.html")[0] == 200
+    assert "Content-Security-Policy: sandbox allow-scripts" in studio.headers
+
+
+@pytest.mark.parametrize("path", [
+    "../secret.toml", "%2e%2e/secret.toml", "..%2fsecret.toml", "%2e%2e%2fsecret.toml", "..%5csecret.toml",
+    "%252e%252e%252fsecret.toml", "d.svg/../../secret.toml", "link.svg", "up/secret.toml", "up/secret.svg",
+    "/etc/passwd", "%2fetc%2fpasswd", "./../secret.toml", "....//secret.toml", "secret.toml%00.svg", "d.svg%00",
+    "", ".", "..", "%c0%ae%c0%ae/secret.toml",
+])
+def test_no_path_leads_out_of_the_folder(studio, path):
+    status, body = studio.get("/files/" + path)
+    assert status in (400, 403, 404), body
+    assert SECRET.encode() not in body and b"root:" not in body
+
+
+@pytest.mark.parametrize("change", [
+    {"base": {"svg": "../secret.svg"}}, {"base": {"svg": "link.svg"}}, {"base": {"svg": "up/secret.svg"}},
+    {"base": {"scene": "../secret.toml"}}, {"base": {"svg": "/etc/passwd"}}, {"base": {"scene": "/etc/passwd"}},
+    {"values": {"pattern.svg": "../secret.svg"}}, {"values": {"fabric.card": "../secret.toml"}},
+    {"values": {"fabric.card": "/etc/passwd.toml"}}, {"values": {"pattern.mesh": "../x.ply"}},
+    {"base": {"generator": "curves"}, "values": {"pattern.options.file": "../secret.toml"}},
+    {"base": {"generator": "curves"}, "values": {"pattern": {"options": {"file": "../secret.toml"}}}},
+    {"base": {"generator": "curves"}, "values": {"pattern.options": {"file": "../secret.toml"}}},
+    {"base": {"scene": "outward.toml"}}, {"values": {"pattern": '{svg = "../secret.svg"}'}},
+    {"base": {"generator": "curves"}, "values": {'pattern.options."file"': "../secret.toml"}},
+])
+def test_no_scene_reads_outside_the_folder(studio, change):
+    (studio.folder / "outward.toml").write_text('[pattern]\nsvg = "../secret.svg"\n')
+    for address in "/api/drawing", "/api/release", "/api/preview":
+        status, answer = studio.post(address, SCENE | change)
+        if status == 200:  # some options are looked at only when their generator runs
+            answer = studio.finished(answer["id"])
+            assert answer["state"] == "failed"
+        assert status in (200, 403, 422), answer
+        assert SECRET not in json.dumps(answer)
+
+
+def test_start_and_difference_stay_in_the_folder(studio):
+    assert studio.post("/api/release", SCENE | {"start": "../elsewhere"})[0] == 403
+    assert studio.get("/api/difference?a=../x&b=up")[0] in (403, 422)
+
+
+def test_uploads_land_in_the_folder_under_a_plain_name(studio):
+    for name in "../../evil.svg", "/etc/cron.d/evil.svg", "a/b/evil.svg", "..\\evil.svg", ".svg", "x" * 500 + ".svg", "link.svg":
+        status, answer = studio.post("/api/upload", {"name": name, "text": DRAWING})
+        assert status == 200 and re.fullmatch(r"[A-Za-z0-9_-]+\.svg", answer["name"]), answer
+        assert not (studio.folder / answer["name"]).is_symlink()
+    assert SECRET in (studio.folder.parent / "secret.svg").read_text()
+    assert studio.post("/api/upload", {"name": "d.svg", "text": DRAWING})[1]["name"] == "d.svg"
+    assert studio.post("/api/upload", {"name": "d.svg", "text": DRAWING + " "})[1]["name"] == "d-2.svg"
+    assert studio.post("/api/upload", {"name": "x.svg", "text": "no drawing"})[0] == 422
+
+
+@pytest.mark.parametrize("headers, status", [
+    ({"Host": "evil.example"}, 421), ({"Host": "127.0.0.1"}, 421), ({"Host": None}, 421), ({"Host": "evil.example:{port}"}, 421),
+    ({"Host": "127.0.0.1:{port}.evil.example"}, 421), ({"Host": "localhost:{port}"}, 200),
+    ({"Origin": "http://evil.example"}, 403), ({"Origin": "null"}, 403), ({"Origin": "http://127.0.0.1:1"}, 403),
+    ({"Origin": "https://127.0.0.1:{port}"}, 403), ({"Origin": "http://127.0.0.1:{port}"}, 200),
+    ({"Sec-Fetch-Site": "cross-site"}, 403), ({"Sec-Fetch-Site": "same-origin"}, 200),
+])
+@pytest.mark.parametrize("target", ["/", "/api/jobs", "/files/d.svg"])
+def test_foreign_hosts_and_origins_are_refused(studio, headers, status, target):
+    given = {k.replace("-", "_"): v and v.format(port=studio.port) for k, v in headers.items()}
+    assert studio.get(target, **given)[0] == status
+
+
+def test_two_hosts_are_none(studio):
+    line = f"Host: 127.0.0.1:{studio.port}\r\n"
+    assert b" 421 " in studio.send(f"GET / HTTP/1.1\r\n{line}Host: evil.example\r\n\r\n")[:40]
+
+
+def test_what_is_left_of_a_refused_request_is_not_read_as_another(studio):
+    own = f"127.0.0.1:{studio.port}"
+    inner = json.dumps(SCENE)
+    smuggled = f"POST /api/release HTTP/1.1\r\nHost: {own}\r\nContent-Type: application/json\r\nContent-Length: {len(inner)}\r\n\r\n{inner}"
+    outer = f"POST /api/release HTTP/1.1\r\nHost: {own}\r\nOrigin: http://evil.example\r\nContent-Type: text/plain\r\nContent-Length: {len(smuggled)}\r\n\r\n"
+    answer = studio.send(outer + smuggled)
+    assert answer.count(b"HTTP/1.1 ") == 1 and b" 403 " in answer[:40]
+    assert json.loads(studio.get("/api/jobs")[1]) == []
+
+
+def test_only_json_is_posted_and_only_known_methods_understood(studio):
+    for kind in "text/plain", "application/x-www-form-urlencoded", "multipart/form-data; boundary=x":
+        assert studio.request("POST", "/api/cancel", '{"id": 1}', Content_Type=kind)[0] == 415
+    for method in "PUT", "DELETE", "OPTIONS", "PATCH":
+        assert studio.request(method, "/api/jobs")[0] in (400, 405)
+    assert studio.request("HEAD", "/api/jobs")[0] == 200
+    assert studio.request("HEAD", "/api/events")[0] == 404
+
+
+def test_large_uploads_are_refused_whole_in_pieces_and_packed(studio):
+    import gzip
+
+    text = json.dumps({"name": "big.svg", "text": "<svg>" + "x" * (25 << 20)})
+    assert studio.request("POST", "/api/upload", text)[0] in (0, 413)
+    head = f"POST /api/upload HTTP/1.1\r\nHost: 127.0.0.1:{studio.port}\r\nContent-Type: application/json\r\n"
+    chunk = "%x\r\n%s\r\n" % (1 << 20, "x" * (1 << 20))
+    answer = studio.send(head + "Transfer-Encoding: chunked\r\n\r\n" + 30 * chunk + "0\r\n\r\n")
+    assert answer == b"" or b" 413 " in answer[:40]
+    packed = gzip.compress(b"x" * (400 << 20), 1)
+    assert studio.request("POST", "/api/upload", packed, Content_Encoding="gzip")[0] in (0, 400, 413, 415)
+    assert list(studio.folder.glob("big*")) == []
+    memory = int(re.search(r"VmHWM:\s+(\d+)", open(f"/proc/{studio.process.pid}/status").read()).group(1))
+    assert SANITIZED or memory < 400_000, f"{memory} kB"  # a few copies of 24 MB beside the program
+    assert studio.alive()
+
+
+def test_slow_clients_keep_nobody_waiting(studio):
+    slow = []
+    for i in range(30):
+        connection = socket.create_connection(("127.0.0.1", studio.port))
+        head = f"POST /api/upload HTTP/1.1\r\nHost: 127.0.0.1:{studio.port}\r\nContent-Type: application/json\r\nContent-Length: 1000\r\n"
+        connection.sendall(b"GET / HT" if i % 2 else (head + "\r\n{").encode())
+        slow.append(connection)
+    begin = time.monotonic()
+    assert studio.get("/api/jobs")[0] == 200
+    assert time.monotonic() - begin < 1
+    for connection in slow:  # five seconds of silence are enough
+        connection.settimeout(15)
+        while connection.recv(4096):
+            pass
+    assert studio.alive()
+
+
+def test_ten_listeners_and_a_running_release_answer_within_a_second(studio):
+    release = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.4, "output.picture": False}}
+    _, answer = studio.post("/api/release", release)
+    listeners = [socket.create_connection(("127.0.0.1", studio.port)) for _ in range(10)]
+    for listener in listeners:
+        listener.sendall(f"GET /api/events HTTP/1.1\r\nHost: 127.0.0.1:{studio.port}\r\n\r\n".encode())
+    times = []
+    for _ in range(20):
+        begin = time.monotonic()
+        for target in "/api/jobs", "/api/runs", "/api/shape?mesh=0":
+            assert studio.get(target)[0] == 200
+        times.append(time.monotonic() - begin)
+        time.sleep(0.1)
+    print(f"slowest of 20 rounds of three requests: {max(times):.3f} s")
+    assert SANITIZED or max(times) < 1
+    for listener in listeners:
+        listener.settimeout(5)
+        heard = b""
+        while b"event: job" not in heard:
+            heard += listener.recv(65536)
+        listener.close()
+    studio.post("/api/cancel", {"id": answer["id"]})
+    assert studio.finished(answer["id"])["state"] == "cancelled"
+    assert studio.alive()
+
+
+def test_a_stopped_server_keeps_what_is_done_and_how_far_the_rest_got(studio):
+    _, first = studio.post("/api/release", SCENE)
+    studio.finished(first["id"])
+    finished = (studio.folder / "d.out/report.json").read_bytes()
+    studio.post("/api/release", {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.4, "output.picture": False}})
+    time.sleep(1.5)
+    assert studio.close() == 0
+    assert (studio.folder / "d.out/report.json").read_bytes() == finished
+    assert json.loads((studio.folder / "radial.out/report.json").read_text())["status"] == "interrupted"
+
+
+def test_a_killed_server_leaves_no_half_result(studio):
+    _, first = studio.post("/api/release", SCENE)
+    studio.finished(first["id"])
+    studio.post("/api/release", SCENE | {"values": {"mesh.size_mm": 0.3}})
+    time.sleep(0.7)
+    studio.process.kill()
+    studio.process.wait()
+    for folder in studio.folder.glob("*.out"):
+        if (folder / "report.json").exists():
+            json.loads((folder / "report.json").read_text())
+            assert (folder / "state.ruche").exists()
+
+
+def test_bad_folders_and_ports_are_said_so(studio, tmp_path):
+    run = subprocess.run([PROGRAM, "studio", tmp_path / "none", "--no-browser"], capture_output=True, text=True, timeout=20)
+    assert run.returncode == 2 and "is not a folder" in run.stderr
+    taken = [PROGRAM, "studio", tmp_path, "--no-browser", "--port", str(studio.port)]
+    run = subprocess.run(taken, capture_output=True, text=True, timeout=20)
+    assert run.returncode == 1 and "in use" in run.stderr
+
+
+def mutated(generator, seed):
+    """Requests that are nearly right."""
+    data = bytearray(seed)
+    for _ in range(generator.randint(1, 6)):
+        kind = generator.randrange(5)
+        at = generator.randrange(len(data) + 1)
+        if kind == 0 and data:
+            data[min(at, len(data) - 1)] = generator.randrange(256)
+        elif kind == 1:
+            del data[at : at + generator.randint(1, 30)]
+        elif kind == 2:
+            data[at:at] = generator.randbytes(generator.randint(1, 20))
+        elif kind == 3:
+            data[at:at] = data[at : at + 40] * generator.randint(1, 20)
+        else:
+            odd = [b"\x00", b"..", b"%2e", b"\r\n\r\n", b"-1", b"1e999", b"[" * 3000, b"\xff\xfe", b'"', b"{}", b"99999999999999999999"]
+            data[at:at] = generator.choice(odd)
+    return bytes(data)
+
+
+def test_fuzzed_requests_do_not_bring_it_down(studio):
+    """Eight seconds; RUCHE_FUZZ_SECONDS=300 for five minutes."""
+    host = f"Host: 127.0.0.1:{studio.port}\r\n"
+    bodies = {
+        "/api/drawing": SCENE | {"rules": [{"match": "#d9480f", "thickness_mm": 0.9}]},
+        "/api/preview": SCENE | {"owner": "fuzz"},
+        "/api/upload": {"name": "f.svg", "text": DRAWING},
+        "/api/cancel": {"id": 1},
+    }
+    seeds = [f"GET {t} HTTP/1.1\r\n{host}\r\n".encode() for t in ("/", "/api/form", "/api/shape?mesh=1", "/files/d.svg", "/api/difference?a=x&b=y")]
+    posts = []
+    for target, body in bodies.items():
+        text = json.dumps(body)
+        posts.append((target, text.encode()))
+        seeds.append(f"POST {target} HTTP/1.1\r\n{host}Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n{text}".encode())
+    until = time.monotonic() + FUZZ_SECONDS
+    counts = [0, 0]
+
+    def attack(number):
+        generator = random.Random(number)
+        while time.monotonic() < until:
+            if generator.random() < 0.4:
+                raw = mutated(generator, generator.choice(seeds))
+            else:  # a sound envelope around a spoilt letter
+                target, body = generator.choice(posts)
+                body = mutated(generator, body)
+                raw = f"POST {target} HTTP/1.1\r\n{host}Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body
+            with socket.create_connection(("127.0.0.1", studio.port), 5) as connection:
+                connection.settimeout(0.5)
+                try:
+                    connection.sendall(raw)
+                    connection.shutdown(socket.SHUT_WR)
+                    connection.recv(4096)
+                except OSError:
+                    pass
+            counts[number] += 1
+
+    threads = [threading.Thread(target=attack, args=(number,)) for number in (0, 1)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    print(f"{sum(counts)} requests in {FUZZ_SECONDS:g} s")
+    assert studio.alive(), studio.process.poll()
+    assert sum(counts) > 5 * FUZZ_SECONDS

@@ -1,0 +1,273 @@
+// The studio as a person uses it: drop a drawing, set numbers, release, cancel, look, compare, take files away.
+import assert from "node:assert/strict";
+import { spawn } from "node:child_process";
+import { copyFileSync, mkdirSync, readFileSync, existsSync } from "node:fs";
+import { after, before, test } from "node:test";
+import { dirname, join } from "node:path";
+import { fileURLToPath, pathToFileURL } from "node:url";
+
+import { launch, scratch, screenshot } from "./browser.mjs";
+
+const program = process.env.RUCHE_PROGRAM ?? "build/release/ruche";
+const source = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
+const torus = join(source, "examples/torus/torus.svg");
+const desktop = { width: 1440, height: 1000 };
+let browser;
+let server;
+let address;
+let folder;
+
+before(async () => {
+    folder = join(scratch(), "work");
+    mkdirSync(folder);
+    copyFileSync(torus, join(folder, "torus.svg"));
+    server = spawn(program, ["studio", folder, "--no-browser"], { stdio: ["ignore", "pipe", "inherit"] });
+    address = await new Promise((found, failed) => {
+        server.stdout.on("data", (text) => {
+            const [match] = String(text).match(/http:\S+/) ?? [];
+            if (match) found(match);
+        });
+        server.on("exit", () => failed(new Error("the server did not start")));
+    });
+    browser = await launch();
+}, { timeout: 120000 });
+after(async () => {
+    await browser?.close();
+    server?.kill("SIGTERM");
+});
+
+async function open(options = {}) {
+    const context = await browser.newContext({ viewport: desktop, acceptDownloads: true, ...options });
+    const page = await context.newPage();
+    page.troubles = [];
+    page.on("console", (message) => {
+        // Chromium itself remarks on refused requests, which are part of these tests, and on its software renderer.
+        if (["error", "warning"].includes(message.type()) && !/GPU stall|GL Driver Message|status of 4/.test(message.text())) page.troubles.push(message.text());
+    });
+    page.on("pageerror", (error) => page.troubles.push(String(error)));
+    page.on("request", (request) => {
+        if (!request.url().startsWith(address) && !/^(data|blob):/.test(request.url())) page.troubles.push(`request for ${request.url()}`);
+    });
+    await page.goto(address);
+    await page.waitForSelector("html[data-ready]", { timeout: 30000 });
+    return page;
+}
+
+/** As if a file were dragged from the desktop onto the page. */
+async function drop(page, path, name) {
+    const data = await page.evaluateHandle(([text, called]) => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([text], called, { type: "image/svg+xml" }));
+        return transfer;
+    }, [readFileSync(path, "utf8"), name]);
+    await page.dispatchEvent("body", "dragover", { dataTransfer: data });
+    await page.dispatchEvent("body", "drop", { dataTransfer: data });
+}
+
+async function set(page, label, value) {
+    await page.locator(`[id="${label}"]`).fill(String(value));
+    await page.locator(`[id="${label}"]`).press("Enter");
+}
+
+const idle = (page) => page.waitForFunction(async () => (await (await fetch("/api/jobs")).json()).every((j) => !["running", "waiting"].includes(j.state)), undefined, { timeout: 120000, polling: 200 });
+const shown = (page, name) => page.waitForSelector(`section.result[aria-label="result ${name}"]`, { timeout: 240000 });
+const runs = async () => (await (await fetch(`${address}api/runs`)).json()).map((r) => r.folder).sort();
+
+test("studio: a drawing that is dropped is shown to scale and previewed within two seconds of a change", { timeout: 120000 }, async () => {
+    const page = await open();
+    await drop(page, torus, "my torus.svg");
+    await page.waitForFunction(() => document.querySelector("#source").value.includes("my-torus.svg"));
+    await page.waitForFunction(() => document.querySelectorAll(".layout .strip").length > 20);
+    assert.ok(existsSync(join(folder, "my-torus.svg")));
+    const bar = await page.locator(".layout .scalebar").evaluate((e) => ({ px: e.firstElementChild.getBoundingClientRect().width, mm: parseFloat(e.lastElementChild.textContent) }));
+    const px = await page.locator(".layout svg > g > path").first().evaluate((e) => e.getBoundingClientRect().width);
+    assert.ok(Math.abs((px * bar.mm) / bar.px - 68) < 1, `the fabric is 68 mm wide, the bar says ${(px * bar.mm) / bar.px}`);
+    await page.waitForSelector(".live canvas", { timeout: 30000 });
+    await idle(page);
+    const times = [];
+    for (const thickness of [0.65, 0.7, 0.75]) {
+        await page.waitForTimeout(900);  // nothing is under way any more
+        await idle(page);
+        const known = await page.evaluate(async () => (await (await fetch("/api/jobs")).json())[0].id);
+        const begin = Date.now();
+        await set(page, "plastic.thickness_mm", thickness);
+        await page.waitForFunction(async (id) => { const [job] = await (await fetch("/api/jobs")).json(); return job.id > id && job.state === "done"; }, known, { polling: 50, timeout: 30000 });
+        times.push((Date.now() - begin) / 1000);
+    }
+    console.log(`preview ready after ${times.map((t) => t.toFixed(2)).join(", ")} s`);
+    await screenshot(page, "studio-preview");
+    assert.ok(Math.min(...times) < 2, `preview took ${times} s`);
+    assert.deepEqual(page.troubles, []);
+    await page.context().close();
+});
+
+test("studio: release, cancel, release again, pick a strip, colour, take the report away, compare two", { timeout: 600000 }, async () => {
+    const page = await open();
+    await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
+    await set(page, "fabric.prestretch", 1.7);
+    await set(page, "plastic.thickness_mm", 0.7);
+    await page.click(".more-settings > summary");
+    await set(page, "mesh.size_mm", 0.4);
+    await idle(page);
+    await page.click(".release");
+    await page.waitForSelector(".progress:not([hidden]) .cancel:visible");
+    await page.waitForFunction(() => /about/.test(document.querySelector(".progress .line").textContent), undefined, { timeout: 60000 });
+    await screenshot(page, "studio-releasing");
+    await page.click(".progress .cancel");
+    await page.waitForFunction(async () => (await (await fetch("/api/jobs")).json())[0].state === "cancelled", undefined, { timeout: 60000 });
+    await set(page, "mesh.size_mm", 1);
+    await idle(page);
+
+    await page.click(".release");
+    await shown(page, "torus-2");
+    assert.match(await page.locator("section.result .badge").first().textContent(), /converged, stable/);
+    await screenshot(page, "studio-result");
+    const strip = page.locator(".strips tbody tr").nth(3);
+    await strip.click();
+    assert.equal(await strip.getAttribute("aria-selected"), "true");
+    await page.selectOption('select[aria-label="colour by"]', "curvature_max");
+    assert.match(await page.locator(".legend p").first().textContent(), /Curvature, largest/);
+    await screenshot(page, "studio-coloured");
+
+    const [download] = await Promise.all([page.waitForEvent("download"), page.click('.downloads a[href$="report.html?download"]')]);
+    assert.equal(download.suggestedFilename(), "torus-2-report.html");
+    const file = join(folder, "..", "mailed.html");
+    await download.saveAs(file);
+    const mailed = await page.context().newPage();
+    await mailed.goto(pathToFileURL(file).href);
+    await mailed.waitForSelector("html[data-ready]", { timeout: 60000 });
+    assert.match(await mailed.locator(".badge").first().textContent(), /converged, stable/);
+    await mailed.close();
+    for (const name of ["shape.obj", "shape.glb", "shape.stl", "scene.toml", "drawing.svg"]) {
+        const [got] = await Promise.all([page.waitForEvent("download"), page.click(`.downloads a[href$="${name}?download"]`)]);
+        assert.ok(readFileSync(await got.path()).length > 500, name);
+    }
+
+    await page.click("text=Back to the print");
+    await page.selectOption('select[aria-label="begin with"]', "torus-2.out");
+    await set(page, "plastic.thickness_mm", 0.9);
+    await page.click(".release");
+    await shown(page, "torus-3");
+    await page.check('input[aria-label="compare torus-2"]');
+    await page.check('input[aria-label="compare torus-3"]');
+    await page.click("text=Compare two");
+    await page.waitForSelector(".comparison .pair canvas >> nth=1");
+    const differences = await page.locator(".differences").textContent();
+    assert.match(differences, /plastic\.thickness_mm/);
+    assert.match(differences, /laid upon|Laid upon/i);
+    await screenshot(page, "studio-side-by-side", { fullPage: true });
+    await page.click("text=Overlaid");
+    assert.equal(await page.locator(".comparison canvas").count(), 1);
+    await screenshot(page, "studio-overlaid");
+    assert.deepEqual(page.troubles, []);
+    await page.context().close();
+});
+
+test("studio: a mistake is said beside its setting, in the program's words, and mended there", { timeout: 120000 }, async () => {
+    const page = await open();
+    await page.selectOption("#source", JSON.stringify({ generator: "radial" }));
+    await set(page, "fabric.prestretch", 4);
+    const said = page.locator('.row[data-key="fabric.prestretch"] .trouble');
+    await said.waitFor();
+    assert.match(await said.textContent(), /outside \[1, 3\]/);
+    assert.ok(await page.locator(".release").isDisabled());
+    await set(page, "pattern.options.inner_mm", 900);
+    await set(page, "fabric.prestretch", 1.6);
+    await page.locator('.options .trouble:visible').first().waitFor();
+    await screenshot(page, "studio-mistake");
+    await set(page, "pattern.options.inner_mm", 12);
+    await page.waitForFunction(() => !document.querySelector(".release").disabled && ![...document.querySelectorAll(".trouble")].some((e) => !e.hidden));
+    await page.context().close();
+});
+
+test("studio: thickness and side can be set per colour", { timeout: 120000 }, async () => {
+    const page = await open();
+    await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
+    await page.waitForSelector('input[aria-label="thickness of #d9480f, mm"]');
+    await page.fill('input[aria-label="thickness of #d9480f, mm"]', "1.1");
+    await page.press('input[aria-label="thickness of #d9480f, mm"]', "Enter");
+    await page.selectOption('select[aria-label="side of #d9480f"]', "back");
+    await page.waitForFunction(() => document.querySelector(".layout .strip")?.getAttribute("fill-opacity") === "0.6");
+    await page.locator(".layout .strip").first().hover();
+    assert.match(await page.locator(".layout .hover").textContent(), /1\.1 mm, back/);
+    await page.context().close();
+});
+
+test("studio: what the command line writes into the folder appears by itself", { timeout: 120000 }, async () => {
+    const page = await open();
+    copyFileSync(torus, join(folder, "typed.svg"));
+    const made = spawn(program, ["simulate", "typed.svg", "--quiet", "--set", "output.picture=false", "--set", "mesh.size_mm=2", "--set", "mesh.fabric_size_mm=3"], { cwd: folder });
+    await new Promise((done) => made.on("exit", done));
+    await page.waitForSelector('tr[data-folder="typed.out"]', { timeout: 10000 });
+    await page.click('tr[data-folder="typed.out"] button.link');
+    await shown(page, "typed");
+    await page.context().close();
+});
+
+test("studio: ten tabs and a running release still answer within a second", { timeout: 300000 }, async () => {
+    const context = await browser.newContext({ viewport: desktop });
+    const pages = [];
+    for (let i = 0; i < 10; ++i) {
+        const page = await context.newPage();
+        await page.goto(address);
+        await page.waitForSelector("html[data-ready]", { timeout: 30000 });
+        pages.push(page);
+    }
+    await pages[0].selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
+    await pages[0].uncheck("#preview");
+    await pages[0].waitForSelector(".layout .strip");
+    const known = (await runs()).length;
+    await pages[0].click(".release");
+    const times = [];
+    for (const page of pages) {
+        times.push(await page.evaluate(async () => {
+            const begin = performance.now();
+            await (await fetch("/api/jobs")).json();
+            await (await fetch("/api/runs")).json();
+            return performance.now() - begin;
+        }));
+    }
+    console.log(`answers in ten tabs: ${times.map((t) => t.toFixed(0)).join(", ")} ms`);
+    assert.ok(Math.max(...times) < 1000, `${times}`);
+    // News reach the tabs that do not listen themselves.
+    await pages[0].waitForSelector("section.result", { timeout: 240000 });
+    for (const page of pages) await page.waitForFunction((n) => document.querySelectorAll(".results tbody tr").length > n, known, { timeout: 20000 });
+    // When the tab that listens is closed, another one takes over.
+    await pages[0].close();
+    await pages[5].waitForTimeout(500);
+    await pages[5].click(".release");
+    await pages[9].waitForFunction((n) => document.querySelectorAll(".results tbody tr").length > n + 1, known, { timeout: 240000 });
+    await context.close();
+});
+
+test("studio: can be used from the keyboard alone", { timeout: 60000 }, async () => {
+    const page = await open();
+    const reached = [];
+    for (let i = 0; i < 40 && !reached.includes("release"); ++i) {
+        await page.keyboard.press("Tab");
+        reached.push(await page.evaluate(() => document.activeElement.id || document.activeElement.className));
+    }
+    for (const wanted of ["file", "source", "fabric.prestretch", "plastic.thickness_mm", "release"]) assert.ok(reached.includes(wanted), `${wanted}: ${reached}`);
+    await page.context().close();
+});
+
+test("studio: on a phone nothing is wider than the screen; dark where the system is", { timeout: 240000 }, async () => {
+    const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
+    for (const colorScheme of ["light", "dark"]) {
+        const page = await open({ ...phone, colorScheme });
+        await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
+        await page.waitForSelector(".layout .strip");
+        await idle(page);
+        const width = await page.evaluate(() => document.documentElement.scrollWidth);
+        assert.ok(width <= 390, `${width} px wide`);
+        await page.evaluate(() => window.scrollTo(0, 0));
+        await screenshot(page, `studio-phone-${colorScheme}`, { fullPage: true });
+        await page.context().close();
+    }
+    const dark = await open({ colorScheme: "dark" });
+    await dark.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
+    await idle(dark);
+    await dark.waitForTimeout(500);
+    await screenshot(dark, "studio-dark", { fullPage: true });
+    await dark.context().close();
+});
