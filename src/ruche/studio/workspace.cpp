@@ -105,6 +105,7 @@ std::vector<RunEntry> Workspace::runs() {
         }
     }
     known_ = std::move(known);
+    list.reserve(known_.size());
     for (const auto& [folder, run] : known_) list.push_back(run.entry);
     std::sort(list.begin(), list.end(),
               [](const RunEntry& a, const RunEntry& b) { return a.written > b.written; });

@@ -103,6 +103,7 @@ class Mapping {
         if (chosen && static_cast<std::size_t>(specimen_) <= columns.size())
             return static_cast<std::size_t>(specimen_ - 1);
         std::vector<std::size_t> numbers;
+        numbers.reserve(columns.size());
         for (const std::size_t i : columns) numbers.push_back(i + 1);
         throw InputError(
             header(),
