@@ -50,6 +50,7 @@ std::vector<std::size_t> spikes(const TestRecord& record) {
     if (record.driven_by_force || force.size() < 20) return found;
     // All but the largest twentieth, so that spikes do not make the scale.
     std::vector<double> sizes;
+    sizes.reserve(force.size());
     for (const double f : force) sizes.push_back(std::abs(f));
     const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 19 / 20);
     std::nth_element(sizes.begin(), place, sizes.end());
