@@ -81,7 +81,9 @@ TEST_CASE("scan comparison: half a noisy scan in cm is put back to 0.05 mm, its 
     CHECK(found.unit == "cm");
     CHECK(found.unit_guessed);
     CHECK(found.skin == Skin::front);
-    // Where it was scanned; an error of the turn grows beyond.
+    // Where it was scanned; an error of the turn grows beyond. By the normals of these 30,000 points alone
+    // noise of 0.3 mm would leave the worst point of the scanned half with a standard deviation of 0.09 mm
+    // and that of the sheet with 0.15 mm (sigma^2 (J^T J)^-1); the rims tell the rest.
     CHECK(misplaced(result, found, 22.0) < 0.05);
     CHECK(misplaced(result, found) < 0.1);
     // Only what is normal to the surface counts of the noise, but rims and ridges have no normal.

@@ -13,18 +13,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;  // keeps the order in which a person wants to read it
 
-const char* status_name(SolveStatus status) {
-    switch (status) {
-        case SolveStatus::converged:
-            return "converged";
-        case SolveStatus::not_converged:
-            return "not_converged";
-        case SolveStatus::interrupted:
-            return "interrupted";
-    }
-    return "";
-}
-
 Json to_json(const FieldValue& value) {
     return std::visit([](const auto& v) { return Json(v); }, value);
 }
@@ -95,7 +83,7 @@ Json all_parameters(const Scene& scene) {
 Json state_of(const Equilibrium& equilibrium) {
     const EnergyTerms& energy = equilibrium.energy;
     Json json;
-    json["status"] = status_name(equilibrium.status);
+    json["status"] = name_of(equilibrium.status);
     json["stable"] = equilibrium.stable;
     json["message"] = equilibrium.message;
     json["energy_mJ"] = {{"total", energy.total()},

@@ -9,6 +9,18 @@
 
 namespace ruche {
 
+std::string_view name_of(SolveStatus status) {
+    switch (status) {
+        case SolveStatus::converged:
+            return "converged";
+        case SolveStatus::not_converged:
+            return "not_converged";
+        case SolveStatus::interrupted:
+            return "interrupted";
+    }
+    return {};
+}
+
 template <class Start>
 static Equilibrium timed_solve(const Model& model, const SolveOptions& options, const Control& control,
                                const Start& start) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ruche/core/control.hpp"
@@ -36,6 +37,7 @@ template <>
 std::span<const Field<SolveOptions>> fields<SolveOptions>();
 
 enum class SolveStatus { converged, not_converged, interrupted };
+std::string_view name_of(SolveStatus status);  ///< as the report has it: "not_converged"
 
 /// What a solve on one mesh took.
 struct LevelEffort {

@@ -48,15 +48,7 @@ std::string run_release(const JobOrder& order, const Workspace& workspace, const
     Result result = simulate(order.scene, control, start);
     add_film(result, control);
     (void)write_result(result, folder, control);
-    switch (result.equilibrium.status) {
-        case SolveStatus::converged:
-            return "converged";
-        case SolveStatus::not_converged:
-            return "not_converged";
-        case SolveStatus::interrupted:
-            return "interrupted";
-    }
-    return {};
+    return std::string(name_of(result.equilibrium.status));
 }
 
 }  // namespace ruche

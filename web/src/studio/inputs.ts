@@ -22,9 +22,9 @@ const spoken: Record<string, string> = {
 export function label(key: string, unit: string): string {
     if (spoken[key]) return spoken[key];
     const bare = key.split(".").at(-1)!;
-    const suffix = "_" + unit.toLowerCase().replaceAll("/", "_per_").replaceAll("^", "");
+    const suffix = "_" + unit.toLowerCase().replaceAll("/", "_per_").replaceAll("^", "").replaceAll(" ", "_");
     const name = unit && bare.endsWith(suffix) ? bare.slice(0, -suffix.length) : bare;
-    const words = name.replaceAll("_", " ");
+    const words = name.replaceAll("_", " ").replace("youngs", "Young's").replace("poissons", "Poisson's");
     return words[0]!.toUpperCase() + words.slice(1);
 }
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <map>
 
+#include "ruche/material/consistent_modulus.hpp"
+#include "ruche/material/laminate.hpp"
 #include "ruche/study/calibration/cycles.hpp"
 #include "ruche/study/calibration/statistics.hpp"
 
@@ -86,30 +88,22 @@ static Spread mean_slope(std::span<const LawCurve> curves, double share) {
 FabricModulus fabric_modulus(std::span<const LawCurve> curves, const Material& material, double prestretch) {
     const Spread secant = mean_slope(curves, 1.0);
     const Spread tangent = mean_slope(curves, 0.2);
-    const double strain = green_strain(prestretch);
-    const FabricResponse law = FabricLaw(material)(Vec3(strain, strain, 0.0));
-    return {
-        .secant = secant.mean,
-        .tangent = tangent.mean,
-        .working = 0.5 * (law.stress[0] + law.stress[1]) * (1.0 - material.laminate_poissons_ratio) / strain,
-        .secant_spread = secant.deviation,
-        .tangent_spread = tangent.deviation};
+    return {.secant = secant.mean,
+            .tangent = tangent.mean,
+            .working = consistent_fabric_modulus(material, {prestretch, prestretch}),
+            .secant_spread = secant.deviation,
+            .tangent_spread = tangent.deviation};
 }
 
-double strip_curvature(const Material& m, double s, double tp) {
-    // W(a, b) per area of a square patch a I, b I is quadratic; its minimum solves two linear equations.
-    const double p = m.plastic_youngs_modulus;
-    const double q = m.fabric_youngs_modulus * s * s;
-    const double tf = m.fabric_thickness;
-    const double rest = 1.0 / (s * s);  // of the fabric's metric; that of plastic is 1
-    // Plastic: a - 1 - 2 z b in [0, tp]; fabric: a - rest - 2 z b in [-tf, 0], its modulus q = E_f s^2 in
-    // layout measure (A = s^2 (a - rest), area 1/s^2).
-    Eigen::Matrix2d k;
-    k << p * tp + q * tf, -(p * tp * tp - q * tf * tf),  //
-        -(p * tp * tp - q * tf * tf), 4.0 / 3.0 * (p * tp * tp * tp + q * tf * tf * tf);
-    const Eigen::Vector2d f(p * tp + q * tf * rest, -(p * tp * tp) + q * tf * tf * rest);
-    const Eigen::Vector2d ab = k.inverse() * f;
-    return std::abs(ab[1]) / ab[0];
+double strip_curvature(const Material& m, double s, double plastic_thickness) {
+    const Mat2 printed = Mat2::Identity();
+    const std::vector<Ply> plies = printed_plies({.front = plastic_thickness,
+                                                  .fabric = m.fabric_thickness,
+                                                  .front_modulus = m.plastic_youngs_modulus,
+                                                  .fabric_modulus = m.fabric_youngs_modulus},
+                                                 printed, printed / (s * s));
+    const FormVector forms = free_forms(plies, m.laminate_poissons_ratio, printed);
+    return std::abs(forms[3]) / forms[0];
 }
 
 }  // namespace ruche

@@ -33,17 +33,11 @@ struct FabricModulus {
     double secant_spread = 0.0, tangent_spread = 0.0;  ///< standard deviation over orientations
 };
 
-/// E_f by each definition. Working: the ply of the laminate held at s has S = E_f E / (1 - nu_b), E = (s^2 -
-/// 1)/2; equal to the mean of the law's S11 and S22 there.
+/// E_f by each definition; working: see consistent_fabric_modulus.
 FabricModulus fabric_modulus(std::span<const LawCurve> curves, const Material& material, double prestretch);
 
-/// Curvature (1/mm) of a narrow strip of plastic on fabric by the bimetal formula for this laminate: with
-/// P = E_p, Q = E_f s^2, e = (s^2 - 1)/(2 s^2), t_p and t_f,
-///
-///     |b| = 6 P Q t_p t_f (t_p + t_f) e / [Q^2 t_f^4 + P^2 t_p^4 + 2 P Q t_f t_p (2 t_f^2 + 3 t_f t_p + 2
-///     t_p^2)]
-///
-/// over the contracted metric (Timoshenko 1925).
+/// Curvature (1/mm) of a narrow strip of plastic on fabric: that of the free laminate, which is Timoshenko's
+/// bimetal (1925; theory page, closed forms).
 double strip_curvature(const Material& material, double prestretch, double plastic_thickness_mm);
 
 }  // namespace ruche
