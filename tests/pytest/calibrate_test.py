@@ -19,7 +19,7 @@ TRUTH = {
 
 
 def ruche(*arguments, cwd, **more):
-    return subprocess.run([RUCHE, *arguments], cwd=cwd, capture_output=True, text=True, timeout=250, **more)
+    return subprocess.run([RUCHE, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600, **more)
 
 
 @pytest.fixture(scope="module")

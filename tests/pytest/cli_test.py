@@ -18,7 +18,7 @@ COARSE = ["--set", "fabric.margin_mm=1", "--set", "mesh.size_mm=1", "--set", "ou
 
 
 def ruche(*arguments, cwd, **more):
-    return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300, **more)
+    return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600, **more)
 
 
 @pytest.fixture
@@ -225,7 +225,7 @@ def test_an_interrupted_run_leaves_its_state_and_goes_on(folder):
     process = big_run(folder)
     wait_for(process, "release")
     process.send_signal(signal.SIGINT)
-    out, error = process.communicate(timeout=300)
+    out, error = process.communicate(timeout=600)
     assert process.returncode == 130, error
     assert "interrupted" in out
     assert report(folder / "k.out")["status"] == "interrupted"
@@ -238,7 +238,7 @@ def test_an_interrupted_run_does_not_replace_a_finished_result(folder):
     process = big_run(folder)
     wait_for(process, "release")
     process.send_signal(signal.SIGTERM)
-    process.communicate(timeout=300)
+    process.communicate(timeout=600)
     assert process.returncode == 130
     assert (folder / "k.out/report.json").read_text() == '{"status": "converged"}'
     assert {path.name for path in (folder / "k.out").iterdir()} == {"report.json", "state.ruche"}
@@ -250,7 +250,7 @@ def test_a_second_interrupt_ends_the_program_at_once(folder):
     process.send_signal(signal.SIGINT)
     time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    process.communicate(timeout=300)
+    process.communicate(timeout=600)
     assert process.returncode in (-signal.SIGINT, 130)
 
 

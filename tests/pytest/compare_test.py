@@ -23,7 +23,7 @@ def result(tmp_path_factory):
 
 
 def compare(result, scan, *options):
-    run = subprocess.run([PROGRAM, "compare", result, scan, *options], capture_output=True, text=True, timeout=280)
+    run = subprocess.run([PROGRAM, "compare", result, scan, *options], capture_output=True, text=True, timeout=600)
     report = result / "compare.json"
     return run, json.loads(report.read_text()) if run.returncode == 0 else None
 

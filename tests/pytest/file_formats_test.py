@@ -16,7 +16,7 @@ SMALL = ["--set", "output.picture=false", "--quiet"]
 
 
 def ruche(*arguments, cwd, code=0):
-    run = subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=120)
+    run = subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600)
     assert run.returncode == code, run.stderr
     return run.stdout
 

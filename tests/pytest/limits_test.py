@@ -33,7 +33,7 @@ def simulate(folder, *options, address_space=None):
 
     return subprocess.run(
         [RUCHE, "simulate", scene, "-o", Path(folder) / "out", "--quiet", *options],
-        preexec_fn=limit, capture_output=True, text=True, timeout=120,
+        preexec_fn=limit, capture_output=True, text=True, timeout=600,
     )  # fmt: skip
 
 

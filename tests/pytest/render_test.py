@@ -14,7 +14,7 @@ SIZE = ["--width-px", "120", "--height-px", "90"]
 
 def ruche(*arguments, cwd):
     without_display = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-    return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=300, env=without_display)
+    return subprocess.run([PROGRAM, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600, env=without_display)
 
 
 @pytest.fixture(scope="module")

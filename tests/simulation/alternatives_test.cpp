@@ -49,7 +49,7 @@ class WideStripOnGrid {
         std::filesystem::temp_directory_path() / fmt::format("ruche-wide-strip-{}.ply", getpid());
 };
 
-bool certain(const Result& result) {
+bool certain_result(const Result& result) {
     return result.equilibrium.status == SolveStatus::converged && result.equilibrium.stable;
 }
 
@@ -61,7 +61,7 @@ void check_both_rolls(const Scene& scene, double least_ratio, double largest_rat
     REQUIRE(list.shapes.size() == 2);
     for (std::size_t i = 0; i < 2; ++i) {
         CAPTURE(i);
-        CHECK(certain(found.shapes[i]));
+        CHECK(certain_result(found.shapes[i]));
         CHECK_FALSE(found.shapes[i].equilibrium.health.tangled);
         CHECK(list.shapes[i].number == static_cast<int>(i) + 1);
         CHECK(list.shapes[i].energy == found.shapes[i].equilibrium.energy.total());
@@ -98,7 +98,7 @@ TEST_CASE("alternatives: a stop keeps the ordinary shape and what was found befo
         if (progress.phase == "search") stop = true;
     };
     const ResultWithAlternatives found = simulate_alternatives(wide_strip(), 2, control);
-    CHECK(certain(found.ordinary));
+    CHECK(certain_result(found.ordinary));
     REQUIRE(found.ordinary.alternatives.has_value());
     CHECK(found.ordinary.alternatives->interrupted);
     REQUIRE(found.shapes.size() == 1);

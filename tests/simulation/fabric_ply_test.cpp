@@ -29,10 +29,10 @@ double mean_curvature(const Result& result) {
     return sum / static_cast<double>(strips.size());
 }
 
-const std::string strip_in_fabric =
+const std::string strip_amid_fabric =
     "pattern.generator = \"strip\"\npattern.options.width_mm = 1.5\nfabric.margin_mm = 5\n"
     "plastic.thickness_mm = 0.6";
-const std::string staggered =
+const std::string staggered_rows =
     "pattern.generator = \"staggered\"\npattern.options = { rows = 5, strips_per_row = 2 }\n"
     "fabric.margin_mm = 1\nplastic.thickness_mm = 0.7";
 
@@ -40,7 +40,7 @@ const std::string staggered =
 
 TEST_CASE("same law: a strip in fabric and the staggered sheet come to a certified rest") {
     const double consistent = consistent_fabric_modulus({}, {1.7, 1.7});
-    for (const std::string& pattern : {strip_in_fabric, staggered}) {
+    for (const std::string& pattern : {strip_amid_fabric, staggered_rows}) {
         const Result law = released(pattern, "same_law", 1.05);
         const Result linear = released(pattern, "linear", 1.05);
         const Result matched = released(pattern, "linear", consistent);

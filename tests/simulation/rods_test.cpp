@@ -17,7 +17,7 @@ using namespace ruche::test;
 
 namespace {
 
-Result released(const std::string& text) {
+Result released_as_rods(const std::string& text) {
     return simulate(parse_scene("model.strips = \"rods\"\n" + text, "test.toml"));
 }
 
@@ -50,10 +50,10 @@ const std::string faint_fabric =
 
 TEST_CASE("rods: a strip in hardly any fabric has the bimetal's curvature, front and back") {
     const auto curvature = [](double thickness, const std::string& side) {
-        const Result result =
-            released(faint_fabric + fmt::format("pattern.generator = \"strip\"\nfabric.margin_mm = 1\n"
-                                                "plastic = {{ thickness_mm = {}, side = \"{}\" }}\n",
-                                                thickness, side));
+        const Result result = released_as_rods(
+            faint_fabric + fmt::format("pattern.generator = \"strip\"\nfabric.margin_mm = 1\n"
+                                       "plastic = {{ thickness_mm = {}, side = \"{}\" }}\n",
+                                       thickness, side));
         REQUIRE(certain(result.equilibrium));
         return measure_strips(result.layout, result.shape).at(0).curvature;
     };
@@ -106,7 +106,7 @@ TEST_CASE("rods: a cantilever bends about both axes of its section under a load 
 
 TEST_CASE("rods: examples' patterns come to a certified rest, and halving the elements changes little") {
     const auto curvature = [](double size) {
-        const Result result = released(fmt::format(
+        const Result result = released_as_rods(fmt::format(
             "pattern.generator = \"staggered\"\npattern.options = {{ rows = 5, strips_per_row = 2 }}\n"
             "fabric.margin_mm = 1\nplastic.thickness_mm = 0.7\nmesh.size_mm = {}\n",
             size));
@@ -163,5 +163,5 @@ TEST_CASE("rods: the report says what they leave out, and a mesh file is refused
     const auto texts = assumptions(scene, {});
     CHECK(
         std::ranges::any_of(texts, [](const std::string& text) { return text.starts_with("model.strips"); }));
-    CHECK_THROWS_AS(released("pattern.mesh = \"layout.ply\"\n"), InputError);
+    CHECK_THROWS_AS(released_as_rods("pattern.mesh = \"layout.ply\"\n"), InputError);
 }

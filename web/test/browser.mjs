@@ -39,6 +39,7 @@ export function simulate(folder, scene, ...options) {
 /** Opens report.html; `page.troubles` collects errors of the console and requests other than for the file itself. */
 export async function open(browser, result, options = {}) {
     const context = await browser.newContext({ viewport: { width: 1440, height: 1000 }, ...options });
+    context.setDefaultTimeout(600000);
     const page = await context.newPage();
     const url = pathToFileURL(join(result, "report.html")).href;
     page.troubles = [];
@@ -53,7 +54,7 @@ export async function open(browser, result, options = {}) {
             page.troubles.push(`request for ${request.url()}`);
     });
     await page.goto(url);
-    await page.waitForSelector("html[data-ready]", { timeout: 60000 });
+    await page.waitForSelector("html[data-ready]", { timeout: 600000 });
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     return page;
 }

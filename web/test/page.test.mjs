@@ -17,7 +17,7 @@ before(async () => {
     torus = simulate(folder, join(source, "examples/torus/scene.toml"), "--set", "output.film_frames=12");
     unfinished = simulate(folder, join(source, "examples/stars/scene.toml"), "--set", "solver.max_iterations=3");
     browser = await launch();
-}, { timeout: 240000 });
+}, { timeout: 600000 });
 after(() => browser?.close());
 
 const drawing = ".view.flat canvas";
@@ -141,7 +141,7 @@ test("page: the release plays from flat to final, every stop says what it is", a
     await screenshot(page, "film-half");
     await slider.fill("0");
     await page.click(".play");
-    await page.waitForFunction((end) => Number(document.querySelector(".film input").value) === end, last, { timeout: 60000 });
+    await page.waitForFunction((end) => Number(document.querySelector(".film input").value) === end, last, { timeout: 600000 });
     assert.match(await page.locator(".film output").textContent(), /^Released/);
     // The camera has stepped back for the flat sheet; from its first place the shape is the first one again.
     await page.locator(shape).focus();

@@ -8,11 +8,11 @@
 namespace ruche {
 namespace {
 
-using Box = AxisBox<double>;
+using PairBox = AxisBox<double>;
 
-void add(Box& box, const Vec3& p) { box.add(Box::Point{p.x(), p.y(), p.z()}); }
+void add(PairBox& box, const Vec3& p) { box.add(PairBox::Point{p.x(), p.y(), p.z()}); }
 
-void inflate(Box& box, double by) {
+void inflate(PairBox& box, double by) {
     for (int k = 0; k < 3; ++k) {
         box.low[k] -= by;
         box.high[k] += by;
@@ -49,7 +49,7 @@ struct ContactSearch::Parts {
     template <class Visit>
     void for_each_pair(int t, int u, const Visit& visit) const;
     template <class Use>
-    void for_each_neighbour(std::vector<Box> boxes, const Use& use) const;
+    void for_each_neighbour(std::vector<PairBox> boxes, const Use& use) const;
 
     ContactPair vertex_triangle(int v, int t) const {
         const Triangle& tri = mesh.triangles[t];
@@ -148,7 +148,7 @@ void ContactSearch::Parts::for_each_pair(int t, int u, const Visit& visit) const
 
 /// Calls use(chunk, t, u) for all triangles t < u whose boxes meet, in parallel over chunks.
 template <class Use>
-void ContactSearch::Parts::for_each_neighbour(std::vector<Box> boxes, const Use& use) const {
+void ContactSearch::Parts::for_each_neighbour(std::vector<PairBox> boxes, const Use& use) const {
     const BoxTree<double> tree(std::move(boxes));
     const std::vector<int>& order = tree.order();
     parallel_for(chunks(order.size()), [&](std::size_t c) {
@@ -165,7 +165,7 @@ ContactSearch::~ContactSearch() = default;
 std::vector<ContactPair> ContactSearch::pairs(const Eigen::VectorXd& x, double margin) const {
     const Parts& p = *parts_;
     const Unknowns at{x.data(), p.mesh.vertex_count()};
-    std::vector<Box> boxes(p.mesh.triangles.size());
+    std::vector<PairBox> boxes(p.mesh.triangles.size());
     for (std::size_t t = 0; t < boxes.size(); ++t) {
         for (const int v : p.mesh.triangles[t]) add(boxes[t], at.position(v));
         inflate(boxes[t], 0.5 * margin * p.distance);
@@ -191,7 +191,7 @@ double ContactSearch::clear_fraction(const Eigen::VectorXd& x, const Eigen::Vect
     const Parts& p = *parts_;
     const Unknowns from{x.data(), p.mesh.vertex_count()};
     const Unknowns to{y.data(), p.mesh.vertex_count()};
-    std::vector<Box> boxes(p.mesh.triangles.size());
+    std::vector<PairBox> boxes(p.mesh.triangles.size());
     for (std::size_t t = 0; t < boxes.size(); ++t) {
         for (const int v : p.mesh.triangles[t]) {
             add(boxes[t], from.position(v));

@@ -19,11 +19,10 @@ namespace {
 
 using Segment = BorderGraph::Segment;
 
-constexpr double grid_per_mm = 1e6;
 constexpr double smallest_snap = 2e-6;
 constexpr int most_passes = 60;
 
-Vec2 on_grid(const Vec2& p) {
+Vec2 rounded_to_grid(const Vec2& p) {
     return {std::round(p.x() * grid_per_mm) / grid_per_mm, std::round(p.y() * grid_per_mm) / grid_per_mm};
 }
 
@@ -32,8 +31,6 @@ std::vector<int> odd_of_both(const std::vector<int>& a, const std::vector<int>& 
     std::set_symmetric_difference(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
     return result;
 }
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Drops points that no segment uses and adds up segments between the same two points (modulo 2).
 void compact(BorderGraph& graph) {
@@ -186,7 +183,7 @@ class Splitter {
         if (cross(along_i, c - a) * cross(along_i, c + along_j - a) >= 0.0) return;
         if (cross(along_j, a - c) * cross(along_j, a + along_i - c) >= 0.0) return;
         const double t = cross(c - a, along_j) / cross(along_i, along_j);
-        const Vec2 at = on_grid(a + t * along_i);
+        const Vec2 at = rounded_to_grid(a + t * along_i);
         const int p = static_cast<int>(graph_.points.size());
         graph_.points.push_back(at);
         cuts_[i].push_back({(at - a).dot(along_i), p});
@@ -236,14 +233,14 @@ void snap_together(BorderGraph& graph, double snap) {
 void append_loop(BorderGraph& graph, const Polyline& loop, int region) {
     const int first = static_cast<int>(graph.points.size());
     const int count = static_cast<int>(loop.size());
-    for (const Vec2& p : loop) graph.points.push_back(on_grid(p));
+    for (const Vec2& p : loop) graph.points.push_back(rounded_to_grid(p));
     for (int i = 0; i < count; ++i)
         graph.segments.push_back({{first + i, first + (i + 1) % count}, {region}});
 }
 
 void append_line(BorderGraph& graph, const Polyline& line, int number) {
     const int first = static_cast<int>(graph.points.size());
-    for (const Vec2& p : line) graph.points.push_back(on_grid(p));
+    for (const Vec2& p : line) graph.points.push_back(rounded_to_grid(p));
     for (int i = 0; i + 1 < static_cast<int>(line.size()); ++i)
         graph.segments.push_back({{first + i, first + i + 1}, {number}});
 }

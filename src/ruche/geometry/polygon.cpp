@@ -15,7 +15,6 @@ namespace ruche {
 
 namespace {
 
-constexpr double grid_per_mm = 1e6;
 constexpr double largest_coordinate = 1e6;  // mm; well inside what Clipper's 64 bits hold exactly
 
 ClipperLib::IntPoint to_grid(const Vec2& p) {
@@ -151,7 +150,7 @@ class Pen {
 };
 
 // The same points without immediate repetitions; throws where Clipper would have to.
-Polyline on_grid(const Polyline& line) {
+Polyline without_repetitions(const Polyline& line) {
     Polyline clean;
     for (const Vec2& p : line) {
         const Vec2 rounded = from_grid(to_grid(p));
@@ -229,7 +228,7 @@ Region offset(const Region& region, double distance, double arc_tolerance) {
 
 Region stroke(const Polyline& line, bool closed, const StrokeStyle& style) {
     // Points much closer than the pen's own arcs are resolved add nothing but crossings inside the stroke.
-    Polyline points = simplify(on_grid(line), closed, 0.1 * style.arc_tolerance);
+    Polyline points = simplify(without_repetitions(line), closed, 0.1 * style.arc_tolerance);
     if (points.size() == 2 && points[0] == points[1]) points.pop_back();
     if (points.empty() || !(style.width > 0.0)) return {};
     if (points.size() == 1) return dot(points.front(), style);

@@ -4,6 +4,9 @@
 
 namespace ruche {
 
+/// Outlines are united and cut on a grid of whole 1e-6 mm.
+inline constexpr double grid_per_mm = 1e6;
+
 double length(const Polyline& line, bool closed = false);
 
 double distance_to_segment(const Vec2& point, const Vec2& a, const Vec2& b);

@@ -118,7 +118,7 @@ bool pass_through(const GridPositions& grid, std::span<const Vec3> x, const Tria
     return true;
 }
 
-using Box = AxisBox<std::int64_t>;
+using GridBox = AxisBox<std::int64_t>;
 
 bool share_edge(const Triangle& a, const Triangle& b) {
     int shared = 0;
@@ -131,7 +131,7 @@ bool share_edge(const Triangle& a, const Triangle& b) {
 std::vector<Intersection> find_self_intersections(std::span<const Vec3> positions,
                                                   std::span<const Triangle> triangles) {
     const GridPositions grid(positions);
-    std::vector<Box> boxes(triangles.size());
+    std::vector<GridBox> boxes(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         // Triangles with a vertex that is not finite keep the empty box, which meets none.
         if (!std::ranges::all_of(triangles[t], [&](int v) { return grid.finite(v); })) continue;

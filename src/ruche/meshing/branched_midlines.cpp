@@ -42,7 +42,7 @@ SegmentGraph border_of(const Polygon& polygon, double spacing) {
 }
 
 /// Where branches end: a junction (more than two of them) or a tip (one).
-struct Node {
+struct MidlineNode {
     Vec2 place;
     double radius = 0.0;  ///< of the largest disc inside that lies here
     int degree = 0;
@@ -54,7 +54,7 @@ struct Branch {
     Polyline points;
     double half_width = 0.0;  ///< median of half the lengths of the edges
 
-    double reach(const std::vector<Node>& all) const {
+    double reach(const std::vector<MidlineNode>& all) const {
         return length(points) + (points.front() - all[nodes[0]].place).norm() +
                (points.back() - all[nodes[1]].place).norm();
     }
@@ -65,7 +65,7 @@ struct Branch {
 };
 
 struct Skeleton {
-    std::vector<Node> nodes;
+    std::vector<MidlineNode> nodes;
     std::vector<Branch> branches;
 };
 
@@ -89,7 +89,7 @@ class Walker {
     }
 
   private:
-    Node node_at(int t) const {
+    MidlineNode node_at(int t) const {
         const Triangle& tri = mesh_.triangles[t];
         const Vec2& a = mesh_.vertices[tri[0]];
         const Vec2& b = mesh_.vertices[tri[1]];
@@ -160,8 +160,8 @@ bool prune(Skeleton& s) {
     double smallest = 0.0;
     for (auto branch = s.branches.begin(); branch != s.branches.end(); ++branch) {
         for (const int k : {0, 1}) {
-            const Node& tip = s.nodes[branch->nodes[1 - k]];
-            const Node& junction = s.nodes[branch->nodes[k]];
+            const MidlineNode& tip = s.nodes[branch->nodes[1 - k]];
+            const MidlineNode& junction = s.nodes[branch->nodes[k]];
             if (tip.degree != 1 || junction.degree < 3) continue;
             const double reach = branch->reach(s.nodes);
             if (reach > shortest_branch * junction.radius) continue;
@@ -181,8 +181,8 @@ bool prune(Skeleton& s) {
 /// Where four arms meet there are two junctions side by side.
 void unite_near_junctions(Skeleton& s) {
     const auto is_gap = [&](const Branch& b) {
-        const Node& one = s.nodes[b.nodes[0]];
-        const Node& other = s.nodes[b.nodes[1]];
+        const MidlineNode& one = s.nodes[b.nodes[0]];
+        const MidlineNode& other = s.nodes[b.nodes[1]];
         return b.nodes[0] != b.nodes[1] && one.degree > 2 && other.degree > 2 &&
                b.reach(s.nodes) <= nearby * std::max(one.radius, other.radius);
     };
@@ -191,8 +191,8 @@ void unite_near_junctions(Skeleton& s) {
         const auto [kept, gone] = gap->nodes;
         s.branches.erase(gap);
         for (Branch& branch : s.branches) std::ranges::replace(branch.nodes, gone, kept);
-        Node& node = s.nodes[kept];
-        const Node& other = s.nodes[gone];
+        MidlineNode& node = s.nodes[kept];
+        const MidlineNode& other = s.nodes[gone];
         // Weighted by the number of junctions that each stands for.
         const double own = node.degree - 2.0, its = other.degree - 2.0;
         node.place = (own * node.place + its * other.place) / (own + its);
@@ -211,7 +211,7 @@ Vec2 heading(const Polyline& points, double over) {
 
 /// Takes away what bends towards a junction or a corner, and lets a tip go on beyond the border: who cuts the
 /// line to the region finds its end.
-void straighten_last(Branch& branch, const Node& node) {
+void straighten_last(Branch& branch, const MidlineNode& node) {
     const bool tip = node.degree == 1;
     const Vec2 from = tip ? branch.points.back() : node.place;
     const double bent = tip ? end_reach * branch.half_width : junction_reach * node.radius;
@@ -250,7 +250,7 @@ class Lines {
 
   private:
     int end_count() const { return static_cast<int>(partner_.size()); }
-    const Node& node(int end) const { return s_.nodes[s_.branches[end / 2].nodes[end % 2]]; }
+    const MidlineNode& node(int end) const { return s_.nodes[s_.branches[end / 2].nodes[end % 2]]; }
     Polyline points_up_to(int end) const {
         Polyline points = s_.branches[end / 2].points;
         if (end % 2 == 0) std::ranges::reverse(points);

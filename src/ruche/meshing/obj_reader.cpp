@@ -10,8 +10,6 @@
 namespace ruche {
 namespace {
 
-constexpr std::size_t longest_file = std::size_t{1} << 30U;
-
 constexpr const char* obj_advice = "A mesh as OBJ has lines \"v x y z\" and triangles \"f a b c\".";
 constexpr const char* table_advice =
     "The table has the columns triangle (in the OBJ's order, from 0), front_mm and back_mm: printed "
@@ -33,7 +31,7 @@ class ObjReader {
     ObjReader(const std::string& path, Faces faces) : path_(path), faces_(faces) {}
 
     RawMesh read() {
-        const std::string text = read_file(path_, "OBJ mesh", longest_file);
+        const std::string text = read_file(path_, "OBJ mesh", largest_mesh_file);
         if (text.find('\0') != std::string::npos)
             throw InputError({.file = path_}, "this is not a text file", obj_advice);
         TextScan scan(text);
@@ -96,7 +94,7 @@ std::vector<std::string_view> cells_of(std::string_view line) {
 }
 
 void read_thickness(const std::string& path, RawMesh& mesh) {
-    const std::string text = read_file(path, "table of thicknesses", longest_file);
+    const std::string text = read_file(path, "table of thicknesses", largest_mesh_file);
     std::string_view rest = text;
     if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
     TextScan scan(rest);

@@ -8,8 +8,6 @@
 namespace ruche {
 namespace {
 
-constexpr std::size_t longest_file = std::size_t{1} << 30U;
-
 constexpr const char* advice =
     "A PLY for a layout has vertices x, y and triangles (vertex_indices) with the properties front_mm and "
     "back_mm: printed thickness, 0 for none.";
@@ -82,7 +80,7 @@ void check_properties(const PlyHeader& header, const std::string& file) {
 }  // namespace
 
 RawMesh read_ply(const std::string& path) {
-    const std::string text = read_file(path, "PLY mesh", longest_file);
+    const std::string text = read_file(path, "PLY mesh", largest_mesh_file);
     TextScan scan(text);
     const PlyHeader header = read_ply_header(scan, path, advice);
     check_properties(header, path);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -32,6 +33,8 @@ RawMesh read_obj(const std::string& path, const std::string& thickness_table);
 /// Any surface, as scanners write them: OBJ, PLY, or STL as text or binary; polygons are cut into triangles,
 /// and a file may hold points alone. Without print. Throws InputError.
 RawMesh read_surface(const std::string& path);
+
+inline constexpr std::size_t largest_mesh_file = std::size_t{1} << 30U;  ///< bytes
 
 /// For the readers: polygons cut into a fan of triangles; fewer than three corners make none.
 void append_fan(RawMesh& mesh, const std::vector<int>& corners);

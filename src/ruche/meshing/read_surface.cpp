@@ -14,11 +14,11 @@
 namespace ruche {
 namespace {
 
-constexpr std::size_t longest_file = std::size_t{1} << 31U;
+constexpr std::size_t largest_scan_file = std::size_t{1} << 31U;
 
 RawMesh read_ply_surface(const std::string& path) {
     constexpr const char* advice = "A scan as PLY has vertices x, y, z and, mostly, faces (vertex_indices).";
-    const std::string text = read_file(path, "PLY scan", longest_file);
+    const std::string text = read_file(path, "PLY scan", largest_scan_file);
     TextScan scan(text);
     const PlyHeader header = read_ply_header(scan, path, advice);
     PlyBody body(scan, header.format, path, advice);
@@ -138,7 +138,7 @@ RawMesh read_surface(const std::string& path) {
     } else if (ending == ".obj") {
         mesh = read_obj_surface(path);
     } else if (ending == ".stl") {
-        const std::string bytes = read_file(path, "STL scan", longest_file);
+        const std::string bytes = read_file(path, "STL scan", largest_scan_file);
         mesh = is_binary_stl(bytes) ? read_binary_stl(bytes) : read_text_stl(bytes, path);
     } else {
         throw InputError({.file = path}, "is neither OBJ, PLY nor STL",

@@ -138,8 +138,6 @@ Polyline ring_midline(const Polygon& ring) {
     return line;
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // Where (0 to 1) the segment from a to b crosses the borders of the region.
 std::vector<double> crossings(const Vec2& a, const Vec2& b, const Region& region) {
     std::vector<double> at = {0.0, 1.0};

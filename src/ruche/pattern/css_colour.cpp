@@ -170,7 +170,7 @@ constexpr NamedColour named_colours[] = {
     {"yellowgreen", 0x9acd32},
 };
 
-Colour from_rgb(std::uint32_t rgb) {
+CssColour from_rgb(std::uint32_t rgb) {
     return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8),
             static_cast<std::uint8_t>(rgb), 1.0};
 }
@@ -179,7 +179,7 @@ std::uint8_t channel(double value) {
     return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
 }
 
-std::optional<Colour> named(std::string_view name) {
+std::optional<CssColour> named(std::string_view name) {
     const auto* found = std::lower_bound(std::begin(named_colours), std::end(named_colours), name,
                                          [](const NamedColour& a, std::string_view b) { return a.name < b; });
     if (found == std::end(named_colours) || found->name != name) return std::nullopt;
@@ -192,7 +192,7 @@ int hex_digit(char c) {
     return -1;
 }
 
-std::optional<Colour> from_hex(std::string_view text) {
+std::optional<CssColour> from_hex(std::string_view text) {
     std::vector<int> digits;
     for (const char c : text.substr(0, text.find_first_of(" \t\r\n"))) {
         digits.push_back(hex_digit(c));
@@ -205,8 +205,8 @@ std::optional<Colour> from_hex(std::string_view text) {
     }
     if (digits.size() != 6 && digits.size() != 8) return std::nullopt;
     const auto byte = [&](std::size_t i) { return 16 * digits[2 * i] + digits[2 * i + 1]; };
-    return Colour{static_cast<std::uint8_t>(byte(0)), static_cast<std::uint8_t>(byte(1)),
-                  static_cast<std::uint8_t>(byte(2)), digits.size() == 8 ? byte(3) / 255.0 : 1.0};
+    return CssColour{static_cast<std::uint8_t>(byte(0)), static_cast<std::uint8_t>(byte(1)),
+                     static_cast<std::uint8_t>(byte(2)), digits.size() == 8 ? byte(3) / 255.0 : 1.0};
 }
 
 struct Argument {
@@ -215,7 +215,7 @@ struct Argument {
 };
 
 /// What stands in the brackets of rgb(...) and hsl(...): three or four numbers, with commas or without.
-std::vector<Argument> arguments(svg::Scanner& scanner) {
+std::vector<Argument> colour_arguments(svg::Scanner& scanner) {
     std::vector<Argument> values;
     if (!scanner.accept('(')) return {};
     scanner.skip_space();
@@ -239,7 +239,7 @@ double fraction(const Argument& argument) {
 }
 
 /// CSS Color 4, section 7.1; hue in degrees.
-Colour from_hsl(double hue, double saturation, double lightness) {
+CssColour from_hsl(double hue, double saturation, double lightness) {
     const auto component = [&](double n) {
         const double k = std::fmod(n + hue / 30.0, 12.0);
         const double amplitude = saturation * std::min(lightness, 1.0 - lightness);
@@ -248,13 +248,13 @@ Colour from_hsl(double hue, double saturation, double lightness) {
     return {component(0.0), component(8.0), component(4.0), 1.0};
 }
 
-std::optional<Colour> from_function(std::string_view text) {
+std::optional<CssColour> from_function(std::string_view text) {
     svg::Scanner scanner(text);
     const std::string_view name = scanner.word();
     if (name != "rgb" && name != "rgba" && name != "hsl" && name != "hsla") return std::nullopt;
-    const std::vector<Argument> values = arguments(scanner);
+    const std::vector<Argument> values = colour_arguments(scanner);
     if (values.empty()) return std::nullopt;
-    Colour colour;
+    CssColour colour;
     if (name.starts_with("rgb")) {
         const auto component = [&](std::size_t i) {
             return channel(values[i].percent ? values[i].value * 2.55 : values[i].value);
@@ -272,15 +272,15 @@ std::optional<Colour> from_function(std::string_view text) {
 
 }  // namespace
 
-std::optional<Colour> parse_css_colour(std::string_view text) {
+std::optional<CssColour> parse_css_colour(std::string_view text) {
     const std::string lower = svg::lower_case(svg::trimmed(text));
     if (lower.starts_with('#')) return from_hex(std::string_view(lower).substr(1));
-    if (lower == "transparent") return Colour{0, 0, 0, 0.0};
-    if (const std::optional<Colour> colour = named(lower)) return colour;
+    if (lower == "transparent") return CssColour{0, 0, 0, 0.0};
+    if (const std::optional<CssColour> colour = named(lower)) return colour;
     return from_function(lower);
 }
 
-std::string hex_colour(const Colour& colour) {
+std::string hex_colour(const CssColour& colour) {
     return fmt::format("#{:02x}{:02x}{:02x}", colour.red, colour.green, colour.blue);
 }
 

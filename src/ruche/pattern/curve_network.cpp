@@ -14,7 +14,6 @@
 namespace ruche {
 namespace {
 
-constexpr std::string_view cap_names[] = {"butt", "round"};
 constexpr std::size_t longest_file = 64U << 20U;
 constexpr double closest_points = 1e-6;  // mm; nearer points are one
 

@@ -27,8 +27,6 @@ Place place_of(const Shape& shape, const std::string& file) {
     return {file, shape.line, "element '" + shape.id + "'"};
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 // The first place where two segments of a closed chain that are not neighbours meet.
 std::optional<Vec2> crossing(const Polyline& loop) {
     if (loop.size() > searchable) return {};

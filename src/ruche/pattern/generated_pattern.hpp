@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ruche/geometry/polygon.hpp"
@@ -23,6 +24,11 @@ struct DrawnStrip {
     LineCap cap = LineCap::butt;
     Side side = Side::front;
 };
+
+/// For the options of generators.
+inline constexpr std::string_view cap_names[] = {"butt", "round"};  ///< of LineCap
+inline constexpr int most_strips = 20000;
+inline constexpr double smallest_gap = 0.1;  ///< between pieces of plastic, mm
 
 /// What a generator draws, mm, y upwards, seen from the printed side.
 struct GeneratedPattern {

@@ -12,7 +12,6 @@ namespace ruche {
 namespace {
 
 constexpr std::string_view style_names[] = {"outlined", "filled"};
-constexpr double smallest_gap = 0.1;  // mm, between pieces of plastic
 constexpr double most_cells = 20000;
 
 void check_disc(double radius, double edge) {

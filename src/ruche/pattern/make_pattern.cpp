@@ -28,7 +28,7 @@ constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 // ("#i") or label, 1 the innermost name of what is around it, and so on outwards.
 std::size_t distance_of_match(const Shape& shape, const std::string& match) {
     if (match.empty()) return nowhere;
-    if (const std::optional<Colour> colour = parse_css_colour(match)) {
+    if (const std::optional<CssColour> colour = parse_css_colour(match)) {
         const std::string hex = hex_colour(*colour);
         if (shape.stroke_colour == hex || shape.fill_colour == hex) return 0;
     }

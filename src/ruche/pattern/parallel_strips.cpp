@@ -8,9 +8,6 @@
 namespace ruche {
 namespace {
 
-constexpr std::string_view cap_names[] = {"butt", "round"};
-constexpr int most_strips = 20000;
-
 LineCap pen_cap(StripCap cap) { return cap == StripCap::round ? LineCap::round : LineCap::butt; }
 
 /// A strip along x from `from` to `to` (its ends, caps included).

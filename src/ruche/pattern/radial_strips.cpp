@@ -11,8 +11,6 @@
 namespace ruche {
 namespace {
 
-constexpr int most_strips = 20000;
-constexpr double smallest_gap = 0.1;      // mm, between strips
 constexpr double chord_tolerance = 0.01;  // mm, of the outline
 
 struct Ring {

@@ -30,10 +30,10 @@ Kind kind_of(std::string_view name) {
     return is_in(silent) || name.find(':') != std::string_view::npos ? Kind::silent : Kind::unknown;
 }
 
-std::optional<Colour> plain_gradient(const SvgFile& file, const pugi::xml_node& server) {
+std::optional<CssColour> plain_gradient(const SvgFile& file, const pugi::xml_node& server) {
     const std::string_view name = local_name(server);
     if (name != "linearGradient" && name != "radialGradient") return std::nullopt;
-    std::optional<Colour> common;
+    std::optional<CssColour> common;
     // A gradient without stops takes those of another one.
     pugi::xml_node gradient = server;
     for (int hop = 0; gradient && !common && hop < 10; ++hop, gradient = file.referenced(gradient)) {
@@ -41,8 +41,8 @@ std::optional<Colour> plain_gradient(const SvgFile& file, const pugi::xml_node& 
             if (local_name(stop) != "stop") continue;
             const Declared declared = file.declared(stop);
             const auto value = declared.find(Property::stop_color);
-            const std::optional<Colour> colour =
-                value == declared.end() ? Colour{} : parse_css_colour(value->second);
+            const std::optional<CssColour> colour =
+                value == declared.end() ? CssColour{} : parse_css_colour(value->second);
             if (!colour || (common && *common != *colour)) return std::nullopt;
             common = colour;
         }

@@ -17,7 +17,7 @@ Kind kind_of(std::string_view name);
 
 /// The colour of a gradient all of whose stops have the same one, such as Inkscape's swatches; empty for any
 /// other gradient and for what is none.
-std::optional<Colour> plain_gradient(const SvgFile& file, const pugi::xml_node& server);
+std::optional<CssColour> plain_gradient(const SvgFile& file, const pugi::xml_node& server);
 
 /// The user's name of an element in a drawing program: Inkscape's label, Illustrator's data-name.
 std::string label_of(const pugi::xml_node& node);

@@ -42,7 +42,7 @@ std::string number(double value) {
 }
 
 /// The part of the plane that the page shows, in whole mm.
-struct Page {
+struct PageExtent {
     double left = infinity;
     double right = -infinity;
     double bottom = infinity;
@@ -63,8 +63,8 @@ struct Page {
     std::string place(const Vec2& x) const { return number(x.x() - left) + "," + number(top - x.y()); }
 };
 
-Page page_of(const GeneratedPattern& generated, double margin) {
-    Page page;
+PageExtent page_of(const GeneratedPattern& generated, double margin) {
+    PageExtent page;
     for (const Polyline& outline : generated.fabric) page.add(outline, margin);
     for (const DrawnStrip& strip : generated.strips) {
         for (const DrawnLine& line : strip.lines) page.add(line.points, 0.5 * strip.width + margin);
@@ -73,7 +73,7 @@ Page page_of(const GeneratedPattern& generated, double margin) {
     return page;
 }
 
-std::string path_data(const Page& page, const Polyline& points, bool closed) {
+std::string path_data(const PageExtent& page, const Polyline& points, bool closed) {
     std::string data;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (i == 0) data += "M ";
@@ -89,7 +89,7 @@ void begin_layer(std::string& svg, const char* name, const std::string& style) {
                        name, style);
 }
 
-void add_strip(std::string& svg, const Page& page, const DrawnStrip& strip, const char* colour) {
+void add_strip(std::string& svg, const PageExtent& page, const DrawnStrip& strip, const char* colour) {
     std::string data;
     for (const DrawnLine& line : strip.lines) {
         if (!data.empty()) data += " ";
@@ -106,7 +106,7 @@ void add_strip(std::string& svg, const Page& page, const DrawnStrip& strip, cons
     svg += fmt::format("    <path id=\"{}\" {}\n      d=\"{}\"/>\n", escaped(strip.id), pen, data);
 }
 
-void add_side(std::string& svg, const Page& page, const GeneratedPattern& generated, Side side) {
+void add_side(std::string& svg, const PageExtent& page, const GeneratedPattern& generated, Side side) {
     const auto on_side = [&](const DrawnStrip& strip) { return strip.side == side; };
     if (std::ranges::none_of(generated.strips, on_side)) return;
     begin_layer(svg, side == Side::front ? front_layer : back_layer,
@@ -117,7 +117,8 @@ void add_side(std::string& svg, const Page& page, const GeneratedPattern& genera
     svg += "  </g>\n";
 }
 
-std::string description(const GeneratedPattern& generated, const Page& page, const SvgOptions& options) {
+std::string description(const GeneratedPattern& generated, const PageExtent& page,
+                        const SvgOptions& options) {
     std::string text = fmt::format("Pattern \"{}\", drawn by {}", generated.name, options.generated_by);
     if (!generated.description.empty()) text += " with " + generated.description;
     text += ". One unit is one mm; seen from the printed side.";
@@ -129,7 +130,7 @@ std::string description(const GeneratedPattern& generated, const Page& page, con
 }  // namespace
 
 std::string to_svg(const GeneratedPattern& generated, const SvgOptions& options) {
-    const Page page = page_of(generated, options.page_margin);
+    const PageExtent page = page_of(generated, options.page_margin);
     const std::string width = number(page.width());
     const std::string height = number(page.height());
     std::string svg =

@@ -20,8 +20,6 @@ double chord_angle(double tolerance, double radius) {
     return std::min(pi / 2.0, 2.0 * std::acos(1.0 - tolerance / radius));
 }
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
-
 double turn(const Vec2& a, const Vec2& b) { return std::abs(std::atan2(cross(a, b), a.dot(b))); }
 
 double distance_to_chord(const Vec2& point, const Vec2& a, const Vec2& b) {

@@ -26,12 +26,12 @@ constexpr Pairs most_in_shape{200'000, 1'000'000};
 constexpr Pairs most_in_drawing{1'000'000, 3'000'000};
 constexpr std::size_t most_comparisons = 100'000'000;
 
-struct Box {
+struct SegmentBox {
     double left, right, low, high;
 };
 
-std::vector<Box> segment_boxes(const Lines& lines) {
-    std::vector<Box> boxes;
+std::vector<SegmentBox> segment_boxes(const Lines& lines) {
+    std::vector<SegmentBox> boxes;
     for (std::size_t i = 0; i < lines.points.size(); ++i) {
         const Polyline& line = lines.points[i];
         const std::size_t count = line.size();
@@ -42,7 +42,8 @@ std::vector<Box> segment_boxes(const Lines& lines) {
                              std::max(a.y(), b.y())});
         }
     }
-    std::sort(boxes.begin(), boxes.end(), [](const Box& a, const Box& b) { return a.left < b.left; });
+    std::sort(boxes.begin(), boxes.end(),
+              [](const SegmentBox& a, const SegmentBox& b) { return a.left < b.left; });
     return boxes;
 }
 
@@ -60,7 +61,7 @@ class Budget {
                                          most_points, tolerance_),
                              "Simplify the drawing, or allow a larger tolerance.");
         }
-        const std::vector<Box> boxes = segment_boxes(lines);
+        const std::vector<SegmentBox> boxes = segment_boxes(lines);
         const std::size_t crossings = overlaps(boxes, 0.0, most_in_shape.lines);
         const std::size_t touches =
             pen_radius > 0.0 ? overlaps(boxes, 2.0 * pen_radius, most_in_shape.pen) : 0;
@@ -75,7 +76,7 @@ class Budget {
 
   private:
     /// Pairs that come closer than `gap`; anything above `limit` when there are more.
-    static std::size_t overlaps(const std::vector<Box>& boxes, double gap, std::size_t limit) {
+    static std::size_t overlaps(const std::vector<SegmentBox>& boxes, double gap, std::size_t limit) {
         std::size_t count = 0, compared = 0;
         for (std::size_t i = 0; i < boxes.size(); ++i) {
             for (std::size_t j = i + 1; j < boxes.size() && boxes[j].left < boxes[i].right + gap; ++j) {

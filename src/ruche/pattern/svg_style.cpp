@@ -24,7 +24,7 @@ std::optional<Paint> parse_server(std::string_view text) {
     Paint paint;
     paint.kind = Paint::Kind::server;
     paint.server = target.starts_with('#') ? target.substr(1) : target;
-    if (const std::optional<Colour> colour = parse_css_colour(text.substr(close + 1))) {
+    if (const std::optional<CssColour> colour = parse_css_colour(text.substr(close + 1))) {
         paint.colour = *colour;
         paint.fallback = true;
     }
@@ -36,7 +36,7 @@ std::optional<Paint> parse_paint(std::string_view text) {
     if (lower == "none" || lower == "context-fill" || lower == "context-stroke") return Paint{};
     if (lower == "currentcolor") return Paint{Paint::Kind::current_colour, {}, {}, false};
     if (lower.starts_with("url(")) return parse_server(text);
-    const std::optional<Colour> colour = parse_css_colour(text);
+    const std::optional<CssColour> colour = parse_css_colour(text);
     if (!colour) return std::nullopt;
     return Paint{Paint::Kind::colour, *colour, {}, false};
 }
@@ -193,10 +193,10 @@ Style inherit(const Style& parent, const Declared& own, double diagonal, const C
     return style;
 }
 
-std::optional<Colour> painted(const Paint& paint, double opacity, const Style& style,
-                              const std::function<std::optional<Colour>(const Paint&)>& server_colour) {
+std::optional<CssColour> painted(const Paint& paint, double opacity, const Style& style,
+                                 const std::function<std::optional<CssColour>(const Paint&)>& server_colour) {
     if (opacity <= 0.0) return std::nullopt;
-    std::optional<Colour> colour;
+    std::optional<CssColour> colour;
     switch (paint.kind) {
         case Paint::Kind::none:
             break;

@@ -13,7 +13,7 @@ namespace ruche::svg {
 
 struct Paint {
     enum class Kind { none, colour, current_colour, server } kind = Kind::none;
-    Colour colour;       ///< of `colour`; of a server, what to use when it does not exist
+    CssColour colour;    ///< of `colour`; of a server, what to use when it does not exist
     std::string server;  ///< id of a gradient or pattern
     bool fallback = false;
 };
@@ -32,7 +32,7 @@ struct Style {
     double miter_limit = 4.0;
     std::vector<double> dashes;  ///< even count, or empty: solid
     double dash_offset = 0.0;
-    Colour colour;
+    CssColour colour;
     bool visible = true;
     std::string markers;  ///< the value that asks for some, or empty
 
@@ -49,7 +49,7 @@ Style inherit(const Style& parent, const Declared& own, double diagonal, const C
 
 /// The colour that is drawn with, if any; `server_colour` is asked for the colour of a gradient that is one
 /// plain colour in truth (Inkscape's swatches).
-std::optional<Colour> painted(const Paint& paint, double opacity, const Style& style,
-                              const std::function<std::optional<Colour>(const Paint&)>& server_colour);
+std::optional<CssColour> painted(const Paint& paint, double opacity, const Style& style,
+                                 const std::function<std::optional<CssColour>(const Paint&)>& server_colour);
 
 }  // namespace ruche::svg

@@ -84,7 +84,7 @@ class Walker {
     Context inside(const pugi::xml_node& node, const Context& context, const Entered& entered);
     bool conditions_hold(const pugi::xml_node& node) const;
     bool refers_to_itself(const pugi::xml_node& node, const pugi::xml_node& target) const;
-    std::optional<Colour> server_colour(const pugi::xml_node& node, const char* what, const Paint& paint);
+    std::optional<CssColour> server_colour(const pugi::xml_node& node, const char* what, const Paint& paint);
     void remark_on_effects(const pugi::xml_node& node, const Declared& declared);
     void remark_on_units(const pugi::xml_node& node, const char* name, const std::string& text,
                          const Affine& to_mm);
@@ -95,7 +95,7 @@ class Walker {
     Warnings& warnings_;
     std::vector<DrawnItem> items_;
     std::unordered_map<const pugi::xml_node_struct*, Known> known_;
-    std::unordered_map<const pugi::xml_node_struct*, std::optional<Colour>> gradients_;
+    std::unordered_map<const pugi::xml_node_struct*, std::optional<CssColour>> gradients_;
     std::vector<pugi::xml_node> used_;  ///< targets that are being drawn
     std::size_t use_visits_ = 0;
     bool said_units_ = false;
@@ -322,8 +322,8 @@ void Walker::viewport(const pugi::xml_node& node, Context context, const pugi::x
     children(node, context);
 }
 
-std::optional<Colour> Walker::server_colour(const pugi::xml_node& node, const char* what,
-                                            const Paint& paint) {
+std::optional<CssColour> Walker::server_colour(const pugi::xml_node& node, const char* what,
+                                               const Paint& paint) {
     const pugi::xml_node server = file_.by_id(paint.server);
     if (!server && paint.fallback) return paint.colour;
     const auto [entry, fresh] = gradients_.try_emplace(server.internal_object());

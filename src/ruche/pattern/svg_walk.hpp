@@ -27,7 +27,7 @@ struct DrawnItem {
     std::shared_ptr<const Outline> outline;  ///< user units
     Affine to_mm;
     Style style;
-    std::optional<Colour> fill, stroke;
+    std::optional<CssColour> fill, stroke;
     std::string id;  ///< may repeat, may be empty
     std::string label, layer;
     std::vector<std::string> groups;  ///< labels and ids of what is around it, innermost first

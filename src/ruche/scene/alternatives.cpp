@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-struct Start {
+struct StartTried {
     std::string name;
     Eigen::VectorXd x;
 };
@@ -35,8 +35,8 @@ class Starts {
 
     int count() const { return static_cast<int>(rolls_.size()) + waves_; }
 
-    Start operator[](int i) const {
-        Start start;
+    StartTried operator[](int i) const {
+        StartTried start;
         if (i < static_cast<int>(rolls_.size())) {
             const Roll& roll = rolls_[i];
             start = {fmt::format("rolled by {:.0f} degrees along {:.0f} degrees", roll.turn * 180.0 / pi,
@@ -87,7 +87,7 @@ AlternativeSearch find_alternatives(const Scene& scene, const PrintMesh& layout,
         search.shapes.push_back({ordinary, {"the flat state"}});
     }
 
-    const auto found = [](const Start& start, const ShapeCatalogue::Match& match) {
+    const auto found = [](const StartTried& start, const ShapeCatalogue::Match& match) {
         return match.symmetry.empty() ? start.name : start.name + " (as its image, " + match.symmetry + ")";
     };
     const Starts starts(path.first_model(), scene, wanted);
@@ -96,7 +96,7 @@ AlternativeSearch find_alternatives(const Scene& scene, const PrintMesh& layout,
         control.say(
             {"search", static_cast<double>(i) / starts.count(),
              fmt::format("start {} of at most {}, {} shapes", i + 1, starts.count(), search.shapes.size())});
-        const Start start = starts[i];
+        const StartTried start = starts[i];
         ++search.starts;
         Equilibrium end = solve(path.first_model(), search_options,
                                 {.stop = control.stop, .deadline = control.deadline}, &start.x);

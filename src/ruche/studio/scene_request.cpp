@@ -9,7 +9,7 @@
 namespace ruche {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr const char* giver = "studio";  // what messages and reports name as the source of a value
 

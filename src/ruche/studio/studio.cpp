@@ -18,7 +18,7 @@
 namespace ruche {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 HttpReply error_reply(int status, const std::string& error) {

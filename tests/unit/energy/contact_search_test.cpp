@@ -50,7 +50,7 @@ double barrier(double u) { return -(u - 1.0) * (u - 1.0) * std::log(u); }
 double barrier_slope(double u) { return -2.0 * (u - 1.0) * std::log(u) - (u - 1.0) * (u - 1.0) / u; }
 
 /// k of the model, mJ/mm^2.
-constexpr double stiffness = 0.01 * gap_distance;
+constexpr double search_stiffness = 0.01 * gap_distance;
 
 /// A strip 30 mm long, printed here and there; as a spiral it is rolled twice around.
 Model rolled_strip() {
@@ -88,7 +88,7 @@ TEST_CASE("contact search: two flat sheets have the energy of a pressure, whatev
             model.set_contacts(search_of(model).pairs(x, 1.0));
             const double u = d * d / (gap_distance * gap_distance);
             CHECK(model.energy_terms(x).contact ==
-                  doctest::Approx(stiffness * 20.0 * barrier(u)).epsilon(1e-9));
+                  doctest::Approx(search_stiffness * 20.0 * barrier(u)).epsilon(1e-9));
             // The force that presses them together.
             const Eigen::VectorXd with = model.gradient(x);
             model.set_contacts({});
@@ -98,7 +98,7 @@ TEST_CASE("contact search: two flat sheets have the energy of a pressure, whatev
                 if (model.input().mesh.vertices[v].x() > 40.0) upwards -= contact[3 * v + 2];
             }
             const double slope = barrier_slope(u) * 2.0 * d / (gap_distance * gap_distance);
-            CHECK(upwards == doctest::Approx(-stiffness * 20.0 * slope).epsilon(1e-8));
+            CHECK(upwards == doctest::Approx(-search_stiffness * 20.0 * slope).epsilon(1e-8));
         }
     }
 }
@@ -109,7 +109,7 @@ TEST_CASE("contact search: edges join in below half the distance, and only add")
     const Eigen::VectorXd x = stacked(model, d);
     model.set_contacts(search_of(model).pairs(x, 1.0));
     const double u = d * d / (gap_distance * gap_distance);
-    CHECK(model.energy_terms(x).contact > 1.001 * stiffness * 20.0 * barrier(u));
+    CHECK(model.energy_terms(x).contact > 1.001 * search_stiffness * 20.0 * barrier(u));
 }
 
 TEST_CASE("contact search: a flat sheet, stretched or relaxed, touches itself nowhere") {

@@ -25,14 +25,14 @@ Eigen::VectorXd state(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
     return x;
 }
 
-struct Sample {
+struct ContactSample {
     const char* name;
     PairKind kind;
     Eigen::VectorXd x;
 };
 
 /// One of every region in which the closest points can lie, within reach.
-std::vector<Sample> samples() {
+std::vector<ContactSample> samples() {
     const Vec3 a(0, 0, 0), b(1.2, 0.1, 0), c(0.2, 0.9, 0.1);
     const Vec3 far(9, 9, 9);
     return {
@@ -57,7 +57,7 @@ Eigen::VectorXd apart(double u) {
 }  // namespace
 
 TEST_CASE("contact: it passes the battery wherever the closest points lie") {
-    for (const Sample& sample : samples()) {
+    for (const ContactSample& sample : samples()) {
         CAPTURE(sample.name);
         const ContactBarrier term(stiffness, {pair_of(sample.kind)});
         const Energy energy = energy_of(term, 4, 0);
@@ -68,7 +68,7 @@ TEST_CASE("contact: it passes the battery wherever the closest points lie") {
 }
 
 TEST_CASE("contact: the sample of nearly parallel edges is one, and the others are not") {
-    for (const Sample& sample : samples()) {
+    for (const ContactSample& sample : samples()) {
         if (sample.kind != PairKind::edge_edge) continue;
         ContactPair sharp = pair_of(sample.kind);
         sharp.parallel = 0.0;

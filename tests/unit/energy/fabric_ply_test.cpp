@@ -13,9 +13,9 @@ using namespace ruche::test;
 
 namespace {
 
-constexpr double nu = 0.4;
+constexpr double poissons_ratio = 0.4;
 
-const std::array<std::array<EdgeKind, 3>, 4> edge_kinds = {{
+const std::array<std::array<EdgeKind, 3>, 4> ply_edge_kinds = {{
     {EdgeKind::free, EdgeKind::free, EdgeKind::free},
     {EdgeKind::averaged, EdgeKind::clamped_rim, EdgeKind::averaged},
     {EdgeKind::free, EdgeKind::open_rim, EdgeKind::free},
@@ -69,15 +69,16 @@ double fine_quadrature(const FabricPly::Layer& layer, const FabricLaw& law, cons
 }  // namespace
 
 TEST_CASE("fabric ply: laminates with the fabric's own law pass the battery with every kind of edge") {
-    for (int k = 0; k < int(edge_kinds.size()); ++k) {
+    for (int k = 0; k < int(ply_edge_kinds.size()); ++k) {
         CAPTURE(k);
         const Star star = random_star(k);
         const PrintedLaminate print = sample_print(k != 1, k != 2);
-        const LaminateTerm term(nu, {with_fabric_law(laminate_element(star, edge_kinds[k], print))});
+        const LaminateTerm term(poissons_ratio,
+                                {with_fabric_law(laminate_element(star, ply_edge_kinds[k], print))});
         const Energy energy = energy_of(term, 6, 3);
         check_battery(energy, star.x);
         const LaminateTerm flipped(
-            nu, {with_fabric_law(laminate_element(star, edge_kinds[k], turned_over(print)))});
+            poissons_ratio, {with_fabric_law(laminate_element(star, ply_edge_kinds[k], turned_over(print)))});
         check_invariance(energy, energy_of(flipped, 6, 3), mirror_z(), star.x);
         check_assembly(term, 6, 3, star.x);
     }
@@ -88,11 +89,11 @@ TEST_CASE("fabric ply: value, gradient and Hessian agree with automatic differen
         CAPTURE(seed);
         const Star star = random_star(seed, 0.25);
         const auto element = with_fabric_law(
-            laminate_element(star, edge_kinds[seed % 4], sample_print(seed % 3 != 1, seed % 3 != 0)));
-        const LaminateTerm term(nu, {element});
+            laminate_element(star, ply_edge_kinds[seed % 4], sample_print(seed % 3 != 1, seed % 3 != 0)));
+        const LaminateTerm term(poissons_ratio, {element});
         const Local<21> local = term.evaluate(0, {star.x.data(), 6}, Order::hessian);
         const auto unknowns = jets<21>(star.x);
-        const Jet<21> exact = LaminateElement{element, nu}.energy<Jet<21>>(unknowns);
+        const Jet<21> exact = LaminateElement{element, poissons_ratio}.energy<Jet<21>>(unknowns);
         check_same({local.value, local.gradient, local.full_hessian()},
                    {exact.value, exact.gradient, exact.hessian}, 1e-11);
     }
@@ -102,9 +103,11 @@ TEST_CASE("fabric ply: an open rim at its least is a free rim while the plies ar
     const Star star = random_star(9);
     const PrintedLaminate print = sample_print(true, false);
     const LaminateTerm rim(
-        nu, {laminate_element(star, {EdgeKind::free_rim, EdgeKind::free, EdgeKind::averaged}, print)});
+        poissons_ratio,
+        {laminate_element(star, {EdgeKind::free_rim, EdgeKind::free, EdgeKind::averaged}, print)});
     const LaminateTerm open(
-        nu, {laminate_element(star, {EdgeKind::open_rim, EdgeKind::free, EdgeKind::averaged}, print)});
+        poissons_ratio,
+        {laminate_element(star, {EdgeKind::open_rim, EdgeKind::free, EdgeKind::averaged}, print)});
     Eigen::VectorXd x = star.x;
     // Quadratic in c: one Newton step is the minimum.
     const Local<21> before = open.evaluate(0, {x.data(), 6}, Order::hessian);

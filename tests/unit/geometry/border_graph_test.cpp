@@ -12,11 +12,9 @@ using namespace ruche;
 
 namespace {
 
-Region box(double x0, double y0, double x1, double y1) {
+Region rectangle(double x0, double y0, double x1, double y1) {
     return {{{Vec2(x0, y0), Vec2(x1, y0), Vec2(x1, y1), Vec2(x0, y1)}, {}}};
 }
-
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
 
 // Whether segments meet only at their ends and points keep their distance from all else.
 bool is_clean(const BorderGraph& graph, double snap) {
@@ -44,7 +42,7 @@ bool is_clean(const BorderGraph& graph, double snap) {
 }  // namespace
 
 TEST_CASE("border graph: a border that two regions share is there once and knows both") {
-    const std::vector<Region> regions = {box(0, 0, 2, 1), box(2, 0, 4, 1)};
+    const std::vector<Region> regions = {rectangle(0, 0, 2, 1), rectangle(2, 0, 4, 1)};
     const BorderGraph graph = border_graph(regions, 1e-3);
     CHECK(graph.points.size() == 6);
     CHECK(graph.segments.size() == 7);
@@ -56,7 +54,7 @@ TEST_CASE("border graph: a border that two regions share is there once and knows
 
 TEST_CASE(
     "border graph: open lines come after the regions, cross borders and each other, and bound nothing") {
-    const std::vector<Region> regions = {box(0, 0, 4, 2)};
+    const std::vector<Region> regions = {rectangle(0, 0, 4, 2)};
     const std::vector<Polyline> lines = {{Vec2(1, 1), Vec2(5, 1)}, {Vec2(2, 0.5), Vec2(2, 1.5), Vec2(3, 2)}};
     const BorderGraph graph = border_graph(regions, 1e-3, lines);
     CHECK(is_clean(graph, 1e-3));
@@ -74,7 +72,7 @@ TEST_CASE(
 }
 
 TEST_CASE("border graph: crossing borders meet at a point of both") {
-    const std::vector<Region> regions = {box(0, 0, 3, 1), box(1, -1, 2, 2)};
+    const std::vector<Region> regions = {rectangle(0, 0, 3, 1), rectangle(1, -1, 2, 2)};
     const BorderGraph graph = border_graph(regions, 1e-3);
     CHECK(graph.points.size() == 12);
     CHECK(is_clean(graph, 1e-3));
@@ -83,7 +81,7 @@ TEST_CASE("border graph: crossing borders meet at a point of both") {
 }
 
 TEST_CASE("border graph: borders closer than the snapping distance become one") {
-    const std::vector<Region> regions = {box(0, 0, 10, 1), box(3, 1.0001, 7, 2)};
+    const std::vector<Region> regions = {rectangle(0, 0, 10, 1), rectangle(3, 1.0001, 7, 2)};
     const BorderGraph graph = border_graph(regions, 1e-3);
     CHECK(is_clean(graph, 1e-3));
     CHECK(area(region_of(graph, 0)) + area(region_of(graph, 1)) == doctest::Approx(14.0).epsilon(1e-4));
@@ -92,7 +90,7 @@ TEST_CASE("border graph: borders closer than the snapping distance become one") 
 }
 
 TEST_CASE("border graph: a region's own borders that coincide vanish") {
-    const Region twice = {box(0, 0, 1, 1)[0], box(1, 0, 2, 1)[0]};
+    const Region twice = {rectangle(0, 0, 1, 1)[0], rectangle(1, 0, 2, 1)[0]};
     const BorderGraph graph = border_graph({&twice, 1}, 1e-3);
     CHECK(graph.segments.size() == 6);
     CHECK(region_of(graph, 0).size() == 1);

@@ -12,7 +12,7 @@ using namespace ruche::test;
 
 namespace {
 
-constexpr double pascal = 1e-6;  // in MPa
+constexpr double one_pascal = 1e-6;  // in MPa
 
 /// Strain (E_dd, E_tt, 2 E_dt) in axes d, t, which lie at an angle to the fabric's, to fabric axes, and back
 /// for stresses (the transpose, as both do the same work).
@@ -55,7 +55,7 @@ Pull pull(const FabricLaw& law, double angle, double strain, Pull state) {
 }
 
 /// The curves print ten digits; strains near zero are differences of numbers near one.
-bool agrees(double found, double expected, double relative = 1e-8) {
+bool agrees_relatively(double found, double expected, double relative = 1e-8) {
     return std::abs(found - expected) <= relative * std::abs(expected) + 1e-9;
 }
 
@@ -74,12 +74,12 @@ TEST_CASE("fabric law: a material point pulled at seven angles follows the refer
         m.neo_hookean_share = row[0] == 0.0 ? 0.0 : 0.01;
         if (stretch == 1.0) state = Pull{};
         state = pull(FabricLaw(m), row[1] * std::numbers::pi / 180.0, 0.5 * (stretch * stretch - 1.0), state);
-        CHECK(agrees(state.stress[0] / pascal, row[3]));
-        CHECK(agrees(stretch * state.stress[0] / pascal, row[4]));
-        CHECK(agrees(state.strain[1], row[5]));
-        CHECK(agrees(std::sqrt(1.0 + 2.0 * state.strain[1]), row[6]));
-        CHECK(agrees(state.strain[2], row[7]));
-        CHECK(agrees(stretch * stretch * state.stress[0] / pascal, row[8]));
+        CHECK(agrees_relatively(state.stress[0] / one_pascal, row[3]));
+        CHECK(agrees_relatively(stretch * state.stress[0] / one_pascal, row[4]));
+        CHECK(agrees_relatively(state.strain[1], row[5]));
+        CHECK(agrees_relatively(std::sqrt(1.0 + 2.0 * state.strain[1]), row[6]));
+        CHECK(agrees_relatively(state.strain[2], row[7]));
+        CHECK(agrees_relatively(stretch * stretch * state.stress[0] / one_pascal, row[8]));
     }
 }
 
@@ -99,15 +99,15 @@ TEST_CASE("fabric law: with the paper's closure it gives eq. 10, and eq. 12 with
         Vec3 strain = Vec3::Zero();
         strain[axis] = row[2];
         strain[1 - axis] = -nu * row[2];
-        const double eq10 = law(strain).stress[axis] / pascal;
-        const double eq12 = eq10 - nu * nu * (law.elasticity() * strain)[axis] / pascal;
+        const double eq10 = law(strain).stress[axis] / one_pascal;
+        const double eq12 = eq10 - nu * nu * (law.elasticity() * strain)[axis] / one_pascal;
         // J of the closure: the transverse stretch is sqrt(1 - 2 nu E).
         const double area_ratio = stretch * std::sqrt(1.0 - 2.0 * nu * row[2]);
         for (const auto& [stress, column] : {std::pair{eq12, 3}, {eq10, 7}}) {
-            CHECK(agrees(stress, row[column], eight_digits));
-            CHECK(agrees(stretch * stress, row[column + 1], eight_digits));
-            CHECK(agrees(stretch * stretch * stress, row[column + 2], eight_digits));
-            CHECK(agrees(stretch * stretch * stress / area_ratio, row[column + 3], eight_digits));
+            CHECK(agrees_relatively(stress, row[column], eight_digits));
+            CHECK(agrees_relatively(stretch * stress, row[column + 1], eight_digits));
+            CHECK(agrees_relatively(stretch * stretch * stress, row[column + 2], eight_digits));
+            CHECK(agrees_relatively(stretch * stretch * stress / area_ratio, row[column + 3], eight_digits));
         }
     }
 }

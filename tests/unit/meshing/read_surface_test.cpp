@@ -12,12 +12,13 @@ using namespace ruche;
 
 namespace {
 
-class Folder {
+class ScanFolder {
   public:
-    Folder() : path_(std::filesystem::temp_directory_path() / ("ruche-surface-" + std::to_string(getpid()))) {
+    ScanFolder()
+        : path_(std::filesystem::temp_directory_path() / ("ruche-surface-" + std::to_string(getpid()))) {
         std::filesystem::create_directories(path_);
     }
-    ~Folder() { std::filesystem::remove_all(path_); }
+    ~ScanFolder() { std::filesystem::remove_all(path_); }
 
     std::string write(const std::string& name, const std::string& bytes) const {
         std::ofstream(path_ / name, std::ios::binary) << bytes;
@@ -91,7 +92,7 @@ const double right_area = 10.0 * std::hypot(1.0, 0.1);
 }  // namespace
 
 TEST_CASE("scan: OBJ with colours, texture numbers and quads") {
-    const Folder folder;
+    const ScanFolder folder;
     const RawMesh mesh = read_surface(folder.write("a.OBJ", obj()));
     CHECK(mesh.vertices.size() == 22);
     CHECK(mesh.triangles.size() == 20);
@@ -99,7 +100,7 @@ TEST_CASE("scan: OBJ with colours, texture numbers and quads") {
 }
 
 TEST_CASE("scan: binary STL whose header says solid, and STL as text") {
-    const Folder folder;
+    const ScanFolder folder;
     const RawMesh binary = read_surface(folder.write("a.stl", binary_stl()));
     CHECK(binary.triangles.size() == 20);
     CHECK(area(binary) == doctest::Approx(right_area).epsilon(1e-6));
@@ -118,7 +119,7 @@ TEST_CASE("scan: binary STL whose header says solid, and STL as text") {
 }
 
 TEST_CASE("scan: PLY in binary of both byte orders, with quads and colours, and points alone") {
-    const Folder folder;
+    const ScanFolder folder;
     for (const bool big : {false, true}) {
         const auto number = [&](auto value) {
             std::string bytes = raw(value);
@@ -145,7 +146,7 @@ TEST_CASE("scan: PLY in binary of both byte orders, with quads and colours, and 
 }
 
 TEST_CASE("scan: what is none is refused with the file's name") {
-    const Folder folder;
+    const ScanFolder folder;
     const std::string stl = binary_stl();
     const std::pair<const char*, std::string> bad[] = {
         {"a.stl", stl.substr(0, stl.size() - 7)},

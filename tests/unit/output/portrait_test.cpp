@@ -12,7 +12,7 @@ using namespace ruche;
 
 namespace {
 
-constexpr PortraitOptions small = {.width_px = 96, .height_px = 80};
+constexpr PortraitOptions small_portrait = {.width_px = 96, .height_px = 80};
 
 int unlike(const Image& a, const Image& b) {
     int count = 0;
@@ -23,7 +23,7 @@ int unlike(const Image& a, const Image& b) {
 }  // namespace
 
 TEST_CASE("portrait: transparent is clear in the corners and opaque on the sheet") {
-    PortraitOptions options = small;
+    PortraitOptions options = small_portrait;
     options.transparent = true;
     const Image image = Portrait(sample::half_torus(11), options).released();
     REQUIRE(image.alpha.size() == 96U * 80U);
@@ -33,12 +33,12 @@ TEST_CASE("portrait: transparent is clear in the corners and opaque on the sheet
     for (const unsigned char a : image.alpha) opaque += a == 255 ? 1 : 0;
     CHECK(opaque > 900);
     CHECK(opaque < 96 * 80 / 2);
-    CHECK(Portrait(sample::half_torus(11), small).released().alpha.empty());
+    CHECK(Portrait(sample::half_torus(11), small_portrait).released().alpha.empty());
 }
 
 TEST_CASE("portrait: the whole sheet is inside, from every side") {
     const Result result = sample::rolled_sheet();
-    PortraitOptions options = small;
+    PortraitOptions options = small_portrait;
     options.transparent = true;
     const Portrait portrait(result, options);
     for (const double turn : {0.0, 60.0, 135.0}) {
@@ -52,12 +52,12 @@ TEST_CASE("portrait: the whole sheet is inside, from every side") {
 
 TEST_CASE("portrait: walking around, looking from above and colouring each change it") {
     const Result result = sample::rolled_sheet();
-    const Image usual = Portrait(result, small).released();
-    CHECK(unlike(usual, Portrait(result, small).released(90.0)) > 500);
-    PortraitOptions above = small;
+    const Image usual = Portrait(result, small_portrait).released();
+    CHECK(unlike(usual, Portrait(result, small_portrait).released(90.0)) > 500);
+    PortraitOptions above = small_portrait;
     above.elevation_deg = 89.9;
     CHECK(unlike(usual, Portrait(result, above).released()) > 500);
-    PortraitOptions coloured = small;
+    PortraitOptions coloured = small_portrait;
     coloured.colour = "mean_curvature_per_mm";
     CHECK(unlike(usual, Portrait(result, coloured).released()) > 500);
     coloured.colour = "mean_curvatur_per_mm";
@@ -68,7 +68,7 @@ TEST_CASE("portrait: walking around, looking from above and colouring each chang
 TEST_CASE("animation: a WebP with a frame for each picture") {
     Animation film(96, 80);
     const Result result = sample::rolled_sheet();
-    const Portrait portrait(result, small);
+    const Portrait portrait(result, small_portrait);
     for (const double turn : {0.0, 40.0, 80.0}) film.add(portrait.released(turn), 50);
     const std::string bytes = film.file();
     CHECK(bytes.starts_with("RIFF"));

@@ -12,7 +12,7 @@ using Json = nlohmann::json;
 namespace {
 
 /// A square of two printed triangles, bent nowhere, with one strip along the diagonal.
-Result small_result() {
+Result printed_square() {
     Result result;
     result.layout.mesh.vertices = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
     result.layout.mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -40,7 +40,7 @@ Result small_result() {
 }  // namespace
 
 TEST_CASE("report: it has every key that others rely on") {
-    const Json json = Json::parse(report_json(small_result()));
+    const Json json = Json::parse(report_json(printed_square()));
     CHECK(json["status"] == "converged");
     CHECK(json["stable"] == true);
     CHECK(json["energy_mJ"]["total"] == 3.25);
@@ -71,7 +71,7 @@ TEST_CASE("report: it has every key that others rely on") {
 }
 
 TEST_CASE("report: it says where the sheet passes through itself, at no more than 20 places") {
-    Result result = small_result();
+    Result result = printed_square();
     CHECK(Json::parse(report_json(result))["health"]["self_intersection_places"] == Json::array());
     result.self_intersections = {{{0, 1}, Vec3(1, 2, 3)}};
     const Json one = Json::parse(report_json(result))["health"]["self_intersection_places"];
@@ -90,7 +90,7 @@ TEST_CASE("report: it says where the sheet passes through itself, at no more tha
 }
 
 TEST_CASE("report: the status has the three pinned names") {
-    Result result = small_result();
+    Result result = printed_square();
     result.equilibrium.status = SolveStatus::not_converged;
     CHECK(Json::parse(report_json(result))["status"] == "not_converged");
     result.equilibrium.status = SolveStatus::interrupted;
@@ -98,13 +98,13 @@ TEST_CASE("report: the status has the three pinned names") {
 }
 
 TEST_CASE("report: a flat strip has curvature 0 and radius null") {
-    const Json strip = Json::parse(report_json(small_result()))["strips"][0];
+    const Json strip = Json::parse(report_json(printed_square()))["strips"][0];
     CHECK(std::abs(strip["curvature_per_mm"].get<double>()) < 1e-9);
     CHECK(strip["radius_mm"].is_null());
 }
 
 TEST_CASE("report: every parameter stands there with value, unit and source") {
-    Result result = small_result();
+    Result result = printed_square();
     result.scene.fabric.prestretch = {1.6, 1.65};
     result.scene.sources["fabric.prestretch"] = {"kite.toml", 14, "fabric.prestretch"};
     result.scene.material_sources["fabric_thickness"] = "assumed: implied by k_B";
@@ -122,7 +122,7 @@ TEST_CASE("report: every parameter stands there with value, unit and source") {
 }
 
 TEST_CASE("report: lists of the scene are written out") {
-    Result result = small_result();
+    Result result = printed_square();
     result.scene.plastic.rules = {{.match = "#ff0000", .thickness = 0.9, .side = Side::back}};
     SupportOptions support;
     support.max_mm = {3, 4};
@@ -135,7 +135,7 @@ TEST_CASE("report: lists of the scene are written out") {
 }
 
 TEST_CASE("report: it is valid JSON whatever the run came to") {
-    Result result = small_result();
+    Result result = printed_square();
     const double nan = std::numeric_limits<double>::quiet_NaN();
     result.equilibrium.energy.plastic = nan;
     result.equilibrium.residual = std::numeric_limits<double>::infinity();

@@ -13,7 +13,7 @@ TEST_CASE("css colour: every notation of red is red") {
           "hsl(0,100%,50%)", "hsl(360deg 100% 50%)", "hsla(1turn,100%,50%,1)", "#ff0000 icc-color(x, 1)"}) {
         CAPTURE(std::string(text));
         REQUIRE(parse_css_colour(text));
-        CHECK(*parse_css_colour(text) == Colour{255, 0, 0, 1.0});
+        CHECK(*parse_css_colour(text) == CssColour{255, 0, 0, 1.0});
     }
 }
 

@@ -1,7 +1,5 @@
 #include <doctest/doctest.h>
 
-#include <ctime>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -162,50 +160,32 @@ std::vector<Harmless> odd_files() {
     };
 }
 
-/// No wrong file may hold anybody up: far less in a release build; sanitizers make code several times slower.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr double little_time = 8.0;
-#else
-constexpr double little_time = 2.0;
-#endif
-
-/// Of the processor, so that a busy machine does not count.
-double seconds(const std::function<void()>& body) {
-    const std::clock_t start = std::clock();
-    body();
-    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
 }  // namespace
 
-TEST_CASE("svg bad input: every wrong file is one clear message in little time") {
+TEST_CASE("svg bad input: every wrong file is one clear message") {
     for (const Case& c : wrong_files()) {
         CAPTURE(c.name);
         std::string message = "nothing was thrown", file;
         const svg_text::TemporaryFile source(c.text);
-        const double time = seconds([&] {
-            try {
-                (void)read_svg(source.path());
-            } catch (const InputError& error) {
-                message = error.what();
-                file = error.place().file;
-                CHECK_FALSE(error.advice().empty());
-            }
-        });
+        try {
+            (void)read_svg(source.path());
+        } catch (const InputError& error) {
+            message = error.what();
+            file = error.place().file;
+            CHECK_FALSE(error.advice().empty());
+        }
         CAPTURE(message);
         CHECK(message.find(c.says) != std::string::npos);
         CHECK(file == source.path());
         CHECK(message.size() < 400 + source.path().size());
-        CHECK(time < little_time);
     }
 }
 
-TEST_CASE("svg bad input: odd but harmless files are read in little time") {
+TEST_CASE("svg bad input: odd but harmless files are read") {
     for (const Harmless& c : odd_files()) {
         CAPTURE(c.name);
         const svg_text::TemporaryFile source(c.text);
-        Drawing drawing;
-        CHECK(seconds([&] { drawing = read_svg(source.path()); }) < little_time);
+        const Drawing drawing = read_svg(source.path());
         CHECK(drawing.shapes.size() == c.shapes);
         for (const std::string& warning : drawing.warnings)
             CHECK(warning.size() < 500 + source.path().size());

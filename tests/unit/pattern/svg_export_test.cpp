@@ -12,7 +12,7 @@ using namespace ruche;
 
 namespace {
 
-bool contains_text(const std::string& text, const std::string& part) {
+bool has_text(const std::string& text, const std::string& part) {
     return text.find(part) != std::string::npos;
 }
 
@@ -40,9 +40,9 @@ GeneratedPattern letter_f() {
 TEST_CASE("svg export: the page is in millimetres and y points down") {
     const std::string svg = to_svg(letter_f(), {.page_margin = 5});
     // x from 0.5 - 5 to 6.5 + 5, y from -0.5 - 5 to 10.5 + 5, to whole mm.
-    CHECK(contains_text(svg, "width=\"17mm\" height=\"22mm\" viewBox=\"0 0 17 22\""));
-    CHECK(contains_text(svg, "<path id=\"top\" fill=\"none\" stroke=\"#d9480f\" stroke-width=\"1\""));
-    CHECK(contains_text(svg, "d=\"M 6,6.5 L 11,6.5\""));  // 16 - 9.5 down, 5 to the right of 1
+    CHECK(has_text(svg, "width=\"17mm\" height=\"22mm\" viewBox=\"0 0 17 22\""));
+    CHECK(has_text(svg, "<path id=\"top\" fill=\"none\" stroke=\"#d9480f\" stroke-width=\"1\""));
+    CHECK(has_text(svg, "d=\"M 6,6.5 L 11,6.5\""));  // 16 - 9.5 down, 5 to the right of 1
 }
 
 TEST_CASE("svg export: front, back and fabric are layers of their own") {
@@ -65,14 +65,14 @@ TEST_CASE("svg export: text from outside cannot break the file") {
     p.description = "file = <x>\"&\n\x01--";
     p.strips[0].id = "q\"><script>";
     const std::string svg = to_svg(p);
-    CHECK(contains_text(svg, "<title>a &amp; b</title>"));
-    CHECK(contains_text(svg, "&lt;x&gt;&quot;&amp;  --"));
-    CHECK_FALSE(contains_text(svg, "<script>"));
-    CHECK_FALSE(contains_text(svg, "\x01"));
+    CHECK(has_text(svg, "<title>a &amp; b</title>"));
+    CHECK(has_text(svg, "&lt;x&gt;&quot;&amp;  --"));
+    CHECK_FALSE(has_text(svg, "<script>"));
+    CHECK_FALSE(has_text(svg, "\x01"));
 }
 
 TEST_CASE("svg export: an empty pattern is still a drawing") {
-    CHECK(contains_text(to_svg({.name = "nothing"}), "</svg>"));
+    CHECK(has_text(to_svg({.name = "nothing"}), "</svg>"));
 }
 
 TEST_CASE("svg export: read back, every generator's regions, layers and ids are the same") {

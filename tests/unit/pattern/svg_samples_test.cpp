@@ -10,11 +10,11 @@
 #include "svg_text.hpp"
 
 using namespace ruche;
+using std::numbers::pi;
 using svg_text::extent;
+using svg_text::ids;
 
 namespace {
-
-const double pi = std::numbers::pi;
 
 Drawing sample(const std::string& name, const DrawingOptions& options = {}) {
     return read_drawing(std::string(RUCHE_TEST_DATA) + "/svg/" + name, options);
@@ -26,12 +26,6 @@ const Shape& shape_named(const Drawing& drawing, const std::string& id) {
     }
     FAIL("no shape ", id);
     return drawing.shapes.front();
-}
-
-std::vector<std::string> ids(const Drawing& drawing) {
-    std::vector<std::string> all;
-    for (const Shape& shape : drawing.shapes) all.push_back(shape.id);
-    return all;
 }
 
 }  // namespace

@@ -7,9 +7,8 @@
 #include "svg_text.hpp"
 
 using namespace ruche;
+using std::numbers::pi;
 using svg_text::extent;
-
-static const double pi = std::numbers::pi;
 
 static Shape one(const std::string& body, const DrawingOptions& options = {}) {
     const Drawing drawing = svg_text::draw(body, options);

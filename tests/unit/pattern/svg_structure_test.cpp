@@ -8,11 +8,7 @@
 using namespace ruche;
 using svg_text::extent;
 
-static std::vector<std::string> ids(const Drawing& drawing) {
-    std::vector<std::string> all;
-    for (const Shape& shape : drawing.shapes) all.push_back(shape.id);
-    return all;
-}
+using svg_text::ids;
 using Ids = std::vector<std::string>;
 
 TEST_CASE("svg structure: nested transforms multiply from the outside in") {

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "ruche/pattern/drawing.hpp"
 
@@ -50,6 +51,12 @@ inline std::string on_page(std::string_view body) {
 
 inline ruche::Drawing draw(std::string_view body, const ruche::DrawingOptions& options = {}) {
     return read(on_page(body), options);
+}
+
+inline std::vector<std::string> ids(const ruche::Drawing& drawing) {
+    std::vector<std::string> all;
+    for (const ruche::Shape& shape : drawing.shapes) all.push_back(shape.id);
+    return all;
 }
 
 inline bool warns(const ruche::Drawing& drawing, std::string_view text) {

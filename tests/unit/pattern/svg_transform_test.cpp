@@ -59,7 +59,7 @@ TEST_CASE("svg transform: stretches are the singular values") {
 }
 
 TEST_CASE("svg viewBox: preserveAspectRatio places it as SVG's table says") {
-    const Box box{{10, 20}, {100, 50}};
+    const svg::Box box{{10, 20}, {100, 50}};
     struct Case {
         const char* aspect;
         Vec2 corner;  // where (10, 20) comes to lie in a viewport of 200 x 200

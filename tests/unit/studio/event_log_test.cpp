@@ -26,9 +26,8 @@ TEST_CASE("events: a waiting reader is woken by news and by the end") {
     CHECK(log.after(seen, 10s) == "event: shape\ndata: 7\n\n");
     writer.join();
     std::thread closer([&] { log.close(); });
-    const auto begin = std::chrono::steady_clock::now();
-    CHECK(log.after(seen, 10s).empty());
-    CHECK(std::chrono::steady_clock::now() - begin < 5s);
+    // Not woken, it would wait until the test is stopped.
+    CHECK(log.after(seen, 1h).empty());
     closer.join();
 }
 

@@ -51,7 +51,7 @@ constexpr std::string_view strain_names[] = {"strain",      "dehnung",     "defo
 constexpr std::string_view other_words[] = {"rate", "speed", "max", "vitesse", "stress", "spannung", "energ"};
 constexpr std::string_view change_words[] = {"änderung", "change", "reduction", "verringerung"};
 constexpr std::string_view width_names[] = {"width", "breite", "largeur", "ancho", "larghezza", "w"};
-constexpr std::string_view branch_names[] = {"branch", "direction", "richtung", "phase", "sens"};
+constexpr std::string_view branch_columns[] = {"branch", "direction", "richtung", "phase", "sens"};
 constexpr std::string_view mass_names[] = {"mass",    "hung mass", "masse", "weight",
                                            "gewicht", "masa",      "massa", "m"};
 constexpr std::string_view length_names[] = {"length", "länge", "longueur", "longitud", "lunghezza", "l"};
@@ -65,7 +65,7 @@ Names names_of(Quantity quantity) {
         case Quantity::width:
             return width_names;
         case Quantity::branch:
-            return branch_names;
+            return branch_columns;
         case Quantity::mass:
             return mass_names;
         case Quantity::length:

@@ -15,7 +15,7 @@
 namespace ruche {
 namespace {
 
-struct Line {
+struct TextLine {
     int number;
     std::string_view text;
     bool remark = false;   ///< began with '#'
@@ -23,8 +23,8 @@ struct Line {
 };
 
 /// Lines that hold anything.
-std::vector<Line> lines_of(std::string_view text) {
-    std::vector<Line> lines;
+std::vector<TextLine> lines_of(std::string_view text) {
+    std::vector<TextLine> lines;
     TextScan scan(text);
     while (!scan.at_end()) {
         std::string_view line = trimmed(scan.take_line());
@@ -61,7 +61,7 @@ double worth_of(const std::vector<std::string>& cells, char decimal) {
     return numbers >= 2 ? 1.0 + 1e-3 * (numbers - doubts) : 0.0;
 }
 
-void rate(Dialect& dialect, const std::vector<Line>& lines) {
+void rate(Dialect& dialect, const std::vector<TextLine>& lines) {
     std::map<std::size_t, double> rows_by_columns;
     const std::size_t stride = std::max<std::size_t>(1, lines.size() / 500);
     for (std::size_t i = 0; i < lines.size(); i += stride) {
@@ -77,7 +77,7 @@ void rate(Dialect& dialect, const std::vector<Line>& lines) {
     }
 }
 
-Dialect dialect_of(const std::vector<Line>& lines, const std::string& file) {
+Dialect dialect_of(const std::vector<TextLine>& lines, const std::string& file) {
     Dialect best{' ', '.'};
     for (const char delimiter : {';', '\t', ',', '|', ' '}) {
         for (const char decimal : {'.', ','}) {
@@ -122,7 +122,8 @@ bool is_row_of_units(const std::vector<std::string>& cells) {
 }
 
 /// Names, and units below them, from the lines above the row of numbers `first`.
-Header header_above(const std::vector<Line>& lines, std::size_t first, const Dialect& dialect, bool remarks) {
+Header header_above(const std::vector<TextLine>& lines, std::size_t first, const Dialect& dialect,
+                    bool remarks) {
     std::vector<std::pair<std::size_t, std::vector<std::string>>> above;
     for (std::size_t i = first; i > 0 && above.size() < 3 && !lines[i - 1].numbers; --i) {
         if (lines[i - 1].remark && !remarks) continue;
@@ -145,7 +146,7 @@ Header header_above(const std::vector<Line>& lines, std::size_t first, const Dia
     return header;
 }
 
-Header header_above(const std::vector<Line>& lines, std::size_t first, const Dialect& dialect) {
+Header header_above(const std::vector<TextLine>& lines, std::size_t first, const Dialect& dialect) {
     Header header = header_above(lines, first, dialect, false);
     return header.names.empty() ? header_above(lines, first, dialect, true) : header;
 }
@@ -173,9 +174,7 @@ bool are_names(std::vector<std::string> names) {
     return std::adjacent_find(names.begin(), names.end()) == names.end();
 }
 
-constexpr std::size_t fewest_rows = 6;  // of a test
-
-std::vector<Section> sections_of(const std::vector<Line>& lines, const Dialect& dialect) {
+std::vector<Section> sections_of(const std::vector<TextLine>& lines, const Dialect& dialect) {
     std::vector<Section> sections;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         if (!lines[i].numbers || (i > 0 && lines[i - 1].numbers && !sections.empty())) continue;
@@ -204,7 +203,7 @@ std::vector<Section> sections_of(const std::vector<Line>& lines, const Dialect& 
     return sections;
 }
 
-std::vector<CsvTable::Row> rows_of(const Section& section, const std::vector<Line>& lines,
+std::vector<CsvTable::Row> rows_of(const Section& section, const std::vector<TextLine>& lines,
                                    const Dialect& dialect) {
     std::vector<CsvTable::Row> rows;
     for (std::size_t i = section.first; i < section.end; ++i)
@@ -213,7 +212,7 @@ std::vector<CsvTable::Row> rows_of(const Section& section, const std::vector<Lin
 }
 
 /// Whether the time of `next` begins where that of `last` ended: the same test on another page.
-bool goes_on(const Section& last, const Section& next, const std::vector<Line>& lines,
+bool goes_on(const Section& last, const Section& next, const std::vector<TextLine>& lines,
              const Dialect& dialect) {
     for (std::size_t column = 0; column < next.header.names.size(); ++column) {
         const std::string name = folded(next.header.names[column]);
@@ -233,9 +232,9 @@ bool goes_on(const Section& last, const Section& next, const std::vector<Line>& 
 
 CsvTable parse_csv(std::string_view bytes, const std::string& file, int specimen) {
     const std::string text = text_of(bytes, file);
-    std::vector<Line> lines = lines_of(text);
+    std::vector<TextLine> lines = lines_of(text);
     const Dialect dialect = dialect_of(lines, file);
-    for (Line& line : lines) {
+    for (TextLine& line : lines) {
         const std::vector<std::string> cells = split(line.text, dialect.delimiter);
         line.numbers =
             !line.remark && cells.size() == dialect.columns && worth_of(cells, dialect.decimal) > 0.0;

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace ruche {
+
+inline constexpr std::size_t fewest_rows = 6;  ///< of a test
 
 /// The table in a text file as a testing machine or a person writes it: whatever stands before it, one or two
 /// rows of names and units, then rows of numbers.

@@ -13,7 +13,6 @@
 namespace ruche {
 namespace {
 
-constexpr std::size_t fewest_rows = 6;
 constexpr std::size_t most_rows = 1500;  // of a branch in the fit; more add time, not knowledge
 constexpr double large_slack = 0.02;
 

@@ -21,13 +21,13 @@ struct Candidate {
 };
 
 /// Where points lie and how they spread.
-struct Spread {
+struct PointSpread {
     Vec3 middle = Vec3::Zero();
     Mat3 axes = Mat3::Identity();  // columns, right-handed, shortest first
 };
 
-Spread spread_of(std::span<const Vec3> points) {
-    Spread spread;
+PointSpread spread_of(std::span<const Vec3> points) {
+    PointSpread spread;
     for (const Vec3& p : points) spread.middle += p / static_cast<double>(points.size());
     Mat3 moments = Mat3::Zero();
     for (const Vec3& p : points) moments += (p - spread.middle) * (p - spread.middle).transpose();
@@ -187,8 +187,8 @@ class Matcher {
 
 std::vector<Candidate> starts(std::span<const Vec3> scan, const std::vector<Vec3>& surface) {
     constexpr std::size_t places = 10;
-    const Spread from = spread_of(scan);
-    const Spread to = spread_of(surface);
+    const PointSpread from = spread_of(scan);
+    const PointSpread to = spread_of(surface);
     std::vector<Candidate> list;
     for (const Vec3& place : far_apart(surface, to.middle, places)) {
         // Half way out: a part's middle lies between the whole's and its rim.
@@ -253,7 +253,7 @@ Registration register_scan(std::span<const Vec3> scan, const SurfaceSearch& surf
                                               {.placing = list.front().placing, .rms = list.front().rms});
     const std::vector<Vec3> few = thinned(scan, rounds[1].points);
     const double reference = matcher.rms(few, result.placing);
-    const Spread spread = spread_of(few);
+    const PointSpread spread = spread_of(few);
     double size = 0.0;
     for (const Vec3& p : few) size += (p - spread.middle).squaredNorm() / static_cast<double>(few.size());
     for (const Candidate& other : list) {
