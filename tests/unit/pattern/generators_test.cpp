@@ -300,22 +300,22 @@ TEST_CASE("traced generator: lines follow their field and keep their distance") 
     CHECK(closest > 0.75 * 2.5 - 1e-9);
 }
 
-TEST_CASE("traced generator: new radial lines begin outward where there is room for them") {
+TEST_CASE("traced generator: radial lines grow in number outward, so that their distance stays") {
     const GeneratedPattern pattern =
         generate_traced({.field = DirectionField::radial, .inner = 4, .outer = 24, .length = 0});
-    int inner = 0;
-    int outer = 0;
-    for (const DrawnStrip& strip : pattern.strips) {
-        const double from = std::min(line_of(strip).front().norm(), line_of(strip).back().norm());
-        const double to = std::max(line_of(strip).front().norm(), line_of(strip).back().norm());
-        CHECK(to > 22.5);  // all of them reach the rim: outward there is ever more room
-        (from < 8.0 ? inner : outer) += 1;
-        const Vec2& a = line_of(strip).front();
-        const Vec2& b = line_of(strip).back();
-        CHECK(std::abs(a.x() * b.y() - a.y() * b.x()) < 1e-6 * a.norm() * b.norm());  // through the middle
+    for (const double radius : {7.0, 12.0, 17.0, 22.0}) {
+        int crossing = 0;
+        for (const DrawnStrip& strip : pattern.strips) {
+            const Vec2& a = line_of(strip).front();
+            const Vec2& b = line_of(strip).back();
+            CHECK(std::abs(a.x() * b.y() - a.y() * b.x()) <
+                  1e-6 * a.norm() * b.norm());  // through the middle
+            if ((a.norm() < radius) != (b.norm() < radius)) ++crossing;
+        }
+        // Lines may be as near as three quarters of the spacing; where two are two spacings apart one begins.
+        CHECK(2.0 * M_PI * radius / crossing > 0.75 * 2.5);
+        CHECK(2.0 * M_PI * radius / crossing < 2.0 * 2.5);
     }
-    CHECK(inner >= 8);
-    CHECK(outer > inner);
 }
 
 TEST_CASE("traced generator: strips are cut to their length, and printed on the back near the middle") {
