@@ -2,7 +2,6 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <map>
 
@@ -11,6 +10,7 @@
 #include "ruche/material/rod_section.hpp"
 #include "ruche/scene/read_scene.hpp"
 #include "ruche/scene/simulate.hpp"
+#include "ruche/study/validation/shape_measures.hpp"
 
 using namespace ruche;
 using namespace ruche::test;
@@ -19,26 +19,6 @@ namespace {
 
 Result released_as_rods(const std::string& text) {
     return simulate(parse_scene("model.strips = \"rods\"\n" + text, "test.toml"));
-}
-
-/// Released over printed length around the middle, mean over the triangles between two radii of the layout.
-double transverse_stretch(const Result& result, double inner, double outer) {
-    double sum = 0.0;
-    double area = 0.0;
-    const TriangleMesh& mesh = result.layout.mesh;
-    for (int t = 0; t < mesh.triangle_count(); ++t) {
-        const auto& [a, b, c] = mesh.triangles[t];
-        const Vec2 centre = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
-        if (centre.norm() < inner || centre.norm() > outer) continue;
-        Mat2 printed;
-        printed << mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a];
-        Eigen::Matrix<double, 3, 2> shape;
-        shape << result.shape[b] - result.shape[a], result.shape[c] - result.shape[a];
-        const Vec2 across = Vec2(-centre.y(), centre.x()).normalized();
-        sum += layout_area(mesh, t) * (shape * printed.inverse() * across).norm();
-        area += layout_area(mesh, t);
-    }
-    return sum / area;
 }
 
 /// Fabric that is hardly there, as far as it is not what the natural curvature is computed with.
@@ -137,7 +117,8 @@ TEST_CASE(
         CHECK(certain(result.equilibrium));
         std::vector<double> stretches;
         for (const Vec2& ring : {Vec2(13.0, 16.0), Vec2(17.5, 21.0), Vec2(23.5, 28.0), Vec2(28.0, 33.0)})
-            stretches.push_back(transverse_stretch(result, ring[0], ring[1]));
+            stretches.push_back(
+                transverse_stretch(result.layout, result.shape, {.inner = ring[0], .outer = ring[1]}));
         MESSAGE(strips << ": " << result.layout.mesh.triangle_count() << " triangles, "
                        << result.equilibrium.iterations << " steps; transverse stretch " << stretches[0]
                        << ", " << stretches[1] << ", " << stretches[2] << ", " << stretches[3]);

@@ -23,7 +23,7 @@ constexpr const char* examples =
     "assumed\n"
     "  ruche pattern radial -o torus.svg                        a drawing to go on from\n"
     "\n"
-    "Exit codes: 0 converged and stable, 1 failed, 2 wrong input, 3 not converged or not stable,\n"
+    "Exit codes: 0 converged and stable, 1 failed, 2 wrong input, 3 not converged, not stable or not valid,\n"
     "130 interrupted.";
 
 /// CLI11 only says that a subcommand is missing; this says what was written in its place.
@@ -62,6 +62,7 @@ int run(int count, char** arguments) {
     ruche::add_calibrate(program, action);
     ruche::add_cards(program, action);
     ruche::add_virtual_test(program, action);
+    ruche::add_validate(program, action);
     ruche::add_template(program, action);
     check_verbs(&program, count, arguments);
     try {

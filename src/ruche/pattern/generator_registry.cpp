@@ -119,6 +119,8 @@ const std::vector<Generator>& table() {
             "stars", "3-pointed stars on a hexagonal tiling of a disc; makes a dome."),
         generator<HexagonTilingOptions, generate_hexagons>(
             "hexagons", "Hexagons, outlined or filled, with gaps, on a disc."),
+        generator<TracedStripsOptions, generate_traced>(
+            "traced", "Locally parallel strips along a direction field on a disc or annulus."),
         generator<CurveNetworkOptions, generate_curves>("curves",
                                                         "A network of curves given as points in a file."),
     };

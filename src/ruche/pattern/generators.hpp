@@ -79,6 +79,30 @@ struct CurveNetworkOptions {
 };
 GeneratedPattern generate_curves(const CurveNetworkOptions& options);
 
+enum class DirectionField { parallel, radial, circular, hyperbolic };
+
+/// Locally parallel strips that follow a direction field over a disc or an annulus of fabric, at a distance
+/// from each other that varies with the radius (patterns as in Jourdan et al. 2022; the fields are given,
+/// nothing is designed). Lines are traced by evenly spaced streamlines (Jobard and Lefer 1997): new ones
+/// begin beside those that are there wherever there is room, and end where they come too close to another;
+/// then they are cut into strips.
+struct TracedStripsOptions {
+    DirectionField field = DirectionField::radial;
+    double turn = 0.0;  ///< degrees, from the field's direction to the strips'; radial and 45: spirals
+    double inner = 4.0;
+    double outer = 20.0;
+    double rim = 0.5;            ///< bare fabric between the print and both borders
+    double spacing = 2.5;        ///< between centre lines of neighbours, at the inner radius
+    double outer_spacing = 2.5;  ///< at the outer radius; linear in between
+    double width = 1.0;
+    double length = 12.0;      ///< of each strip; 0 = lines are not cut
+    double gap = 2.0;          ///< between strips of one line
+    double back_inside = 0.0;  ///< strips whose middle lies nearer to the middle are printed on the back
+};
+GeneratedPattern generate_traced(const TracedStripsOptions& options);
+
+template <>
+std::span<const Field<TracedStripsOptions>> fields<TracedStripsOptions>();
 template <>
 std::span<const Field<SingleStripOptions>> fields<SingleStripOptions>();
 template <>

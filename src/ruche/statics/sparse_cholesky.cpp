@@ -92,6 +92,9 @@ std::vector<int> nested_dissection(std::span<const int> start, std::span<const i
     METIS_SetDefaultOptions(options);
     options[METIS_OPTION_SEED] = 1;
     options[METIS_OPTION_NUMBERING] = 0;
+    // METIS draws from one sequence of random numbers per process: two at a time would change each other's.
+    static std::mutex one_at_a_time;
+    const std::scoped_lock lock(one_at_a_time);
     if (METIS_NodeND(&count, xadj.data(), adjncy.data(), nullptr, options, order.data(), position.data()) !=
         METIS_OK) {
         throw std::bad_alloc();

@@ -279,3 +279,63 @@ TEST_CASE("generator registry: mistakes are errors that name the option and help
     CHECK(contains_text(problem_of("curves", {}), "no file"));
     CHECK(contains_text(problem_of("curves", {{"file", "/nowhere/at all.csv"}}), "/nowhere/at all.csv"));
 }
+
+TEST_CASE("traced generator: lines follow their field and keep their distance") {
+    const TracedStripsOptions options{.field = DirectionField::circular, .inner = 5, .outer = 20};
+    const GeneratedPattern pattern = generate_traced(options);
+    CHECK(pattern.fabric.size() == 2);
+    REQUIRE(pattern.strips.size() > 10);
+    for (const DrawnStrip& strip : pattern.strips) {
+        // Runge-Kutta's fourth order with steps of 0.25 mm on radii above 5 mm: far below a micrometre.
+        const double radius = line_of(strip).front().norm();
+        for (const Vec2& p : line_of(strip)) CHECK(p.norm() == doctest::Approx(radius).epsilon(1e-5));
+        CHECK(radius > 5.0 + 0.5 + 0.5);
+        CHECK(radius < 20.0 - 0.5 - 0.5);
+    }
+    double closest = 1e9;
+    for (std::size_t i = 0; i < pattern.strips.size(); ++i)
+        for (std::size_t k = 0; k < i; ++k)
+            for (const Vec2& p : line_of(pattern.strips[i]))
+                for (const Vec2& q : line_of(pattern.strips[k])) closest = std::min(closest, (p - q).norm());
+    CHECK(closest > 0.75 * 2.5 - 1e-9);
+}
+
+TEST_CASE("traced generator: radial lines grow in number outward, so that their distance stays") {
+    const GeneratedPattern pattern =
+        generate_traced({.field = DirectionField::radial, .inner = 4, .outer = 24, .length = 0});
+    for (const double radius : {7.0, 12.0, 17.0, 22.0}) {
+        int crossing = 0;
+        for (const DrawnStrip& strip : pattern.strips) {
+            const Vec2& a = line_of(strip).front();
+            const Vec2& b = line_of(strip).back();
+            CHECK(std::abs(a.x() * b.y() - a.y() * b.x()) <
+                  1e-6 * a.norm() * b.norm());  // through the middle
+            if ((a.norm() < radius) != (b.norm() < radius)) ++crossing;
+        }
+        // Lines may be as near as three quarters of the spacing; where two are two spacings apart one begins.
+        CHECK(2.0 * M_PI * radius / crossing > 0.75 * 2.5);
+        CHECK(2.0 * M_PI * radius / crossing < 2.0 * 2.5);
+    }
+}
+
+TEST_CASE("traced generator: strips are cut to their length, and printed on the back near the middle") {
+    const GeneratedPattern pattern = generate_traced(
+        {.field = DirectionField::parallel, .inner = 0, .outer = 20, .length = 6, .back_inside = 9});
+    CHECK(pattern.fabric.size() == 1);
+    int on_the_back = 0;
+    for (const DrawnStrip& strip : pattern.strips) {
+        const Polyline& line = line_of(strip);
+        CHECK((line.back() - line.front()).norm() < 6.0 + 1e-9);
+        CHECK((strip.side == Side::back) == (line[line.size() / 2].norm() < 9.0));
+        on_the_back += strip.side == Side::back ? 1 : 0;
+    }
+    CHECK(on_the_back > 3);
+    CHECK(on_the_back < static_cast<int>(pattern.strips.size()) / 2);
+}
+
+TEST_CASE("traced generator: contradictions are named") {
+    CHECK(contains_text(problem_of("traced", {{"spacing_mm", "1.2"}}), "leave no room"));
+    CHECK(contains_text(problem_of("traced", {{"inner_mm", "0"}}), "no direction in its middle"));
+    CHECK(contains_text(problem_of("traced", {{"inner_mm", "30"}}), "not smaller than outer_mm"));
+    CHECK(problem_of("traced", {{"inner_mm", "0"}, {"field", "parallel"}}).empty());
+}

@@ -6,27 +6,15 @@
 
 #include "ruche/study/calibration/calibration_plots.hpp"
 #include "ruche/study/calibration/plot.hpp"
+#include "ruche/study/html_page.hpp"
 
 namespace ruche {
 namespace {
 
-constexpr std::string_view style = R"(<style>
-body { font: 15px/1.5 system-ui, sans-serif; color: #1a1a1a; max-width: 1120px; margin: 2em auto; padding: 0 1em; }
-h1 { font-size: 1.6em; } h2 { font-size: 1.25em; margin-top: 2em; border-bottom: 1px solid #ccc; }
-table { border-collapse: collapse; } th, td { text-align: left; padding: .25em .8em .25em 0; vertical-align: top;
-border-bottom: 1px solid #e5e5e5; } td.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
-.bad { color: #a33c00; } ul.warnings { background: #fff6e5; border-left: 4px solid #e69f00; padding: .6em 2em; }
-svg text { font: 11px system-ui, sans-serif; fill: #333; } svg text.title { font-weight: 600; font-size: 13px; }
-svg .grid { stroke: #e3e3e3; } .plots { display: flex; flex-wrap: wrap; gap: 8px; }
-small { color: #666; }
-</style>
-)";
-
-std::string paragraph(const std::string& text) { return "<p>" + html_escaped(text) + "</p>\n"; }
-
 std::string section(const std::string& title, const std::string& text, const std::string& plots) {
     if (plots.empty()) return {};
-    return fmt::format("<h2>{}</h2>\n{}<div class=\"plots\">\n{}</div>\n", title, paragraph(text), plots);
+    return fmt::format("<h2>{}</h2>\n{}<div class=\"plots\">\n{}</div>\n", title, html_paragraph(text),
+                       plots);
 }
 
 std::string value_rows(const CardSet& set) {
@@ -153,10 +141,8 @@ std::string files(const Calibration& c) {
 }  // namespace
 
 std::string calibration_page(const Calibration& c) {
-    const std::string title = html_escaped("Calibration of " + c.card.name);
-    std::string html = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>" + title +
-                       "</title>\n" + std::string(style) + "</head><body>\n<h1>" + title + "</h1>\n";
-    if (!c.card.description.empty()) html += paragraph(c.card.description);
+    std::string html;
+    if (!c.card.description.empty()) html += html_paragraph(c.card.description);
     if (!c.warnings.empty()) {
         html += "<ul class=\"warnings\">\n";
         for (const std::string& warning : c.warnings) html += "<li>" + html_escaped(warning) + "</li>\n";
@@ -177,7 +163,7 @@ std::string calibration_page(const Calibration& c) {
     html += section("Plastic", "Young's modulus is the tangent at zero.", plastic_plots(c));
     html += printed(c);
     html += files(c);
-    return html + "</body></html>\n";
+    return html_page("Calibration of " + c.card.name, html);
 }
 
 }  // namespace ruche

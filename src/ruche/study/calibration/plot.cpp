@@ -77,6 +77,15 @@ std::string points_of(const PlotSeries& series, const Axis& x, const Axis& y) {
     return text;
 }
 
+std::string error_bars_svg(const PlotSeries& series, const Axis& x, const Axis& y) {
+    std::string text;
+    for (std::size_t i = 0; i < series.low.size(); ++i)
+        if (std::isfinite(series.low[i]) && std::isfinite(series.high[i]))
+            text += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}m-3 0h6m-3 0V{1:.1f}m-3 0h6\"/>",
+                                x(series.x[i]), y(series.low[i]), y(series.high[i]));
+    return text.empty() ? text : fmt::format("<g stroke=\"{}\" fill=\"none\">{}</g>\n", series.colour, text);
+}
+
 std::string series_svg(const PlotSeries& series, const Axis& x, const Axis& y) {
     const std::string points = points_of(series, x, y);
     if (series.dots) return fmt::format("<g fill=\"{}\">{}</g>\n", series.colour, points);
@@ -137,6 +146,8 @@ std::string svg_plot(const Plot& plot) {
             xs.add(series.x[i], plot.log_x);
             ys.add(series.y[i], plot.log_y);
         }
+        for (const double v : series.low) ys.add(v, plot.log_y);
+        for (const double v : series.high) ys.add(v, plot.log_y);
     }
     if (xs.low > xs.high || ys.low > ys.high) return {};
     const double w = plot.width_px;
@@ -157,7 +168,8 @@ std::string svg_plot(const Plot& plot) {
             "<line class=\"grid\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/>"
             "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
             left, w - right, y(tick), left - 6.0, y(tick) + 4.0, tick);
-    for (const PlotSeries& series : plot.series) svg += series_svg(series, x, y);
+    for (const PlotSeries& series : plot.series)
+        svg += series_svg(series, x, y) + error_bars_svg(series, x, y);
     svg += legend_svg(plot);
     svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n", 0.5 * (left + w - right),
                        h - 10.0, html_escaped(plot.x_label));

@@ -13,6 +13,8 @@ struct PlotSeries {
     bool dots = false;    ///< single points; else a line
     bool dashed = false;  ///< of a line
     double size = 1.6;    ///< line width or radius of a point, px
+    /// Error bars: smallest and largest y of each point; empty: none.
+    std::vector<double> low, high;
 };
 
 struct Plot {

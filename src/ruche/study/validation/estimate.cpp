@@ -1,0 +1,36 @@
+#include "ruche/study/validation/estimate.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace ruche {
+
+Estimate estimate(std::span<const double> values, double refinement) {
+    assert(values.size() >= 2 && refinement > 1.0);
+    constexpr double safety = 1.25;
+    const std::size_t n = values.size();
+    const double fine = values[n - 1];
+    const double step = fine - values[n - 2];
+    Estimate result{.value = fine, .order = std::numeric_limits<double>::quiet_NaN(), .extrapolated = fine};
+    if (n == 2) {
+        const double gain = step / (refinement - 1.0);
+        result.uncertainty = safety * std::abs(gain);
+        result.extrapolated = fine + gain;
+        return result;
+    }
+    const double before = values[n - 2] - values[n - 3];
+    const double order = std::log(before / step) / std::log(refinement);  // NaN when the sign changes
+    if (order >= 0.5 && order <= 3.0) {
+        const double gain = step / (std::pow(refinement, order) - 1.0);
+        result.order = order;
+        result.uncertainty = safety * std::abs(gain);
+        result.extrapolated = fine + gain;
+    } else {
+        result.uncertainty = safety * std::max({std::abs(step), std::abs(before), std::abs(step + before)});
+    }
+    return result;
+}
+
+}  // namespace ruche

@@ -1,0 +1,144 @@
+#include "ruche/study/validation/shape_measures.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "ruche/geometry/circle_fit.hpp"
+#include "ruche/geometry/strain_measures.hpp"
+
+namespace ruche {
+namespace {
+
+using Edges32 = Eigen::Matrix<double, 3, 2>;
+
+Vec2 layout_centre(const TriangleMesh& mesh, int t) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
+    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+}
+
+/// dx/dX of a triangle.
+Edges32 deformation(const TriangleMesh& mesh, std::span<const Vec3> shape, int t) {
+    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
+    Mat2 printed;
+    printed << mesh.vertices[b] - mesh.vertices[a], mesh.vertices[c] - mesh.vertices[a];
+    Edges32 released;
+    released << shape[b] - shape[a], shape[c] - shape[a];
+    return released * printed.inverse();
+}
+
+double angle_at(const Vec3& corner, const Vec3& a, const Vec3& b) {
+    return std::atan2((a - corner).cross(b - corner).norm(), (a - corner).dot(b - corner));
+}
+
+double released_area(const Triangle& t, std::span<const Vec3> shape) {
+    return 0.5 * (shape[t[1]] - shape[t[0]]).cross(shape[t[2]] - shape[t[0]]).norm();
+}
+
+constexpr double nothing_there = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+double transverse_stretch(const PrintMesh& layout, std::span<const Vec3> shape, const LayoutRing& ring) {
+    double sum = 0.0;
+    double area = 0.0;
+    for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
+        const Vec2 centre = layout_centre(layout.mesh, t);
+        if (!ring.holds(centre)) continue;
+        const Vec2 out = centre - ring.middle;
+        const Vec2 around = Vec2(-out.y(), out.x()).normalized();
+        sum += layout_area(layout.mesh, t) * (deformation(layout.mesh, shape, t) * around).norm();
+        area += layout_area(layout.mesh, t);
+    }
+    return area > 0.0 ? sum / area : nothing_there;
+}
+
+IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
+                                         const LayoutRing& ring) {
+    const TriangleMesh& mesh = layout.mesh;
+    std::vector<double> defect(mesh.vertices.size(), 2.0 * M_PI);
+    double area = 0.0;
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        const Triangle& corners = mesh.triangles[static_cast<std::size_t>(t)];
+        if (ring.holds(layout_centre(mesh, t))) area += released_area(corners, shape);
+        for (int i = 0; i < 3; ++i)
+            defect[corners[i]] -=
+                angle_at(shape[corners[i]], shape[corners[(i + 1) % 3]], shape[corners[(i + 2) % 3]]);
+    }
+    double bend = 0.0;
+    for (const Edge& edge : find_edges(mesh).edges) {
+        if (edge.on_boundary()) {
+            for (const int v : edge.vertex) defect[v] = 0.0;
+            continue;
+        }
+        const auto [a, b] = edge.vertex;
+        if (!ring.holds(0.5 * (mesh.vertices[a] + mesh.vertices[b]))) continue;
+        const Vec3& left = shape[mesh.triangles[edge.triangle[0]][edge.local[0]]];
+        const Vec3& right = shape[mesh.triangles[edge.triangle[1]][edge.local[1]]];
+        const double angle = dihedral_angle(dihedral_frame(shape[a], shape[b], left),
+                                            dihedral_frame(shape[b], shape[a], right));
+        // The dihedral angle is positive where neighbours rise towards the front, curvature where they sink.
+        bend -= 0.5 * (shape[b] - shape[a]).norm() * angle;
+    }
+    double gauss = 0.0;
+    for (std::size_t v = 0; v < defect.size(); ++v)
+        if (ring.holds(mesh.vertices[v])) gauss += defect[v];
+    if (!(area > 0.0)) return {nothing_there, nothing_there};
+    return {gauss / area, bend / area};
+}
+
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape) {
+    Vec3 sight = Vec3::Zero();
+    std::set<int> printed;
+    for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
+        sight += layout_area(layout.mesh, t) * deformation(layout.mesh, shape, t).col(1);
+        if (layout.print[static_cast<std::size_t>(t)].bare()) continue;
+        printed.insert(layout.mesh.triangles[static_cast<std::size_t>(t)].begin(),
+                       layout.mesh.triangles[static_cast<std::size_t>(t)].end());
+    }
+    if (!(sight.norm() > 0.0)) return nothing_there;
+    sight.normalize();
+    std::vector<Vec3> seen;
+    for (const int v : printed) seen.emplace_back(shape[v] - sight.dot(shape[v]) * sight);
+    const CircleFit circle = fit_circle(seen);
+    return circle.valid ? circle.curvature : nothing_there;
+}
+
+std::vector<int> chosen_strips(const PrintMesh& layout, const std::string& begin, double share) {
+    Eigen::AlignedBox2d print;
+    std::vector<Eigen::AlignedBox2d> boxes(layout.strips.size());
+    for (std::size_t s = 0; s < boxes.size(); ++s) {
+        for (const auto& line : layout.strips[s].centreline) {
+            for (const MeshPoint& point : line) {
+                const Triangle& t = layout.mesh.triangles[static_cast<std::size_t>(point.triangle)];
+                Vec2 p = Vec2::Zero();
+                for (int i = 0; i < 3; ++i) p += point.weights[i] * layout.mesh.vertices[t[i]];
+                boxes[s].extend(p);
+            }
+        }
+        print.extend(boxes[s]);
+    }
+    // A sheet of one row is as flat as its strips: a hair of room.
+    const Vec2 half = 0.5 * share * print.sizes() + Vec2::Constant(1e-6);
+    const Eigen::AlignedBox2d inside(print.center() - half, print.center() + half);
+    std::vector<int> chosen;
+    for (std::size_t s = 0; s < boxes.size(); ++s)
+        if (layout.strips[s].id.starts_with(begin) && !boxes[s].isEmpty() && inside.contains(boxes[s]))
+            chosen.push_back(static_cast<int>(s));
+    return chosen;
+}
+
+PrintMesh with_middles(PrintMesh layout, double share) {
+    for (MeshedStrip& strip : layout.strips) {
+        for (std::vector<MeshPoint>& line : strip.centreline) {
+            // Points are evenly spaced.
+            const auto cut = std::lround(0.5 * (1.0 - share) * static_cast<double>(line.size() - 1));
+            line.assign(line.begin() + cut, line.end() - cut);
+        }
+    }
+    return layout;
+}
+
+}  // namespace ruche

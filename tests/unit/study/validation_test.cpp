@@ -1,0 +1,256 @@
+#include "ruche/study/validation/validation.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "ruche/core/error.hpp"
+#include "ruche/meshing/structured.hpp"
+#include "ruche/study/validation/shape_measures.hpp"
+
+using namespace ruche;
+
+namespace {
+
+/// An experiment whose series are given: variants "a" and "b", metric "m", with +-0.1 on each value.
+ExperimentOutcome measured(const std::vector<double>& a, const std::vector<double>& b) {
+    ExperimentOutcome outcome;
+    outcome.experiment.variants = {{.name = "a"}, {.name = "b"}};
+    outcome.experiment.metrics = {{.name = "m"}};
+    for (const auto& [name, values] : {std::pair("a", a), std::pair("b", b)}) {
+        ValueSeries series{.variant = name, .metric = "m"};
+        for (const double v : values) {
+            series.x.push_back(static_cast<double>(series.x.size()));
+            series.y.push_back({.value = v, .uncertainty = 0.1});
+        }
+        outcome.series.push_back(series);
+    }
+    return outcome;
+}
+
+bool holds(ExperimentOutcome outcome, const CheckSpec& check) {
+    outcome.experiment.checks = {check};
+    return judge(outcome).at(0).holds;
+}
+
+/// A rectangle as a sheet without print, and a shape that `place` gives its vertices.
+PrintMesh sheet(double length, double width, int across) {
+    PrintMesh layout;
+    layout.mesh = rectangle_mesh(MeshKind::alternating, {.length = length, .width = width, .across = across});
+    layout.print.resize(layout.mesh.triangles.size());
+    layout.strip.resize(layout.mesh.triangles.size());
+    return layout;
+}
+
+template <class Place>
+std::vector<Vec3> placed(const PrintMesh& layout, const Place& place) {
+    std::vector<Vec3> shape;
+    for (const Vec2& p : layout.mesh.vertices) shape.push_back(place(p));
+    return shape;
+}
+
+/// A folder with an experiment that goes away with the test.
+class ExperimentFolder {
+  public:
+    explicit ExperimentFolder(const std::string& text) {
+        path_ = std::filesystem::temp_directory_path() /
+                fmt::format("ruche-experiment-{}", reinterpret_cast<std::uintptr_t>(this));
+        std::filesystem::create_directories(path_);
+        std::ofstream(path_ / "experiment.toml") << text;
+    }
+    ~ExperimentFolder() { std::filesystem::remove_all(path_); }
+    ExperimentFolder(const ExperimentFolder&) = delete;
+    ExperimentFolder& operator=(const ExperimentFolder&) = delete;
+
+    std::string problem() const {
+        try {
+            (void)read_experiment(path_.string());
+        } catch (const InputError& error) {
+            return error.what();
+        }
+        return "";
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+}  // namespace
+
+TEST_CASE("estimate: three meshes with an error of second order give the order and the limit") {
+    const std::vector<double> values = {5.0 + 3.0 * 1.0, 5.0 + 3.0 * 0.25, 5.0 + 3.0 * 0.0625};
+    const Estimate e = estimate(values, 2.0);
+    CHECK(e.order == doctest::Approx(2.0).epsilon(1e-12));
+    CHECK(e.extrapolated == doctest::Approx(5.0).epsilon(1e-12));
+    CHECK(e.uncertainty == doctest::Approx(1.25 * 3.0 * 0.0625).epsilon(1e-12));
+    CHECK(e.value == values.back());
+}
+
+TEST_CASE("estimate: the limit lies within the uncertainty of two meshes, and noise is not extrapolated") {
+    const Estimate two = estimate(std::vector<double>{5.4, 5.1}, 2.0);
+    CHECK(std::isnan(two.order));
+    CHECK(two.uncertainty == doctest::Approx(1.25 * 0.3));
+    const Estimate noise = estimate(std::vector<double>{5.0, 5.2, 5.1}, 2.0);
+    CHECK(std::isnan(noise.order));
+    CHECK(noise.extrapolated == 5.1);
+    CHECK(noise.uncertainty == doctest::Approx(1.25 * 0.2));
+    CHECK(estimate(std::vector<double>{5.0, 5.0, 5.0}, 2.0).uncertainty == 0.0);
+}
+
+TEST_CASE("checks: a trend holds only beyond the uncertainty") {
+    CHECK(holds(measured({3, 2, 1}, {4, 3, 2}), {.kind = CheckKind::falls, .metric = "m"}));
+    CHECK_FALSE(holds(measured({3, 2, 1.85}, {4, 3, 2}), {.kind = CheckKind::falls, .metric = "m"}));
+    CHECK_FALSE(holds(measured({3, 2, 1}, {4, 3, 2}), {.kind = CheckKind::rises, .metric = "m"}));
+    const ExperimentOutcome negative = measured({-3, -2, -1}, {-4, -3, -2});
+    CHECK(holds(negative, {.kind = CheckKind::falls, .metric = "m", .absolute = true}));
+    CHECK(holds(negative, {.kind = CheckKind::rises, .metric = "m"}));
+}
+
+TEST_CASE("checks: signs, ranges, references and comparisons count the uncertainty") {
+    const ExperimentOutcome o = measured({1.0, 2.0}, {0.05, 2.15});
+    const auto of = [](CheckKind kind, const char* variant) {
+        return CheckSpec{.kind = kind, .metric = "m", .variants = {variant}};
+    };
+    CHECK(holds(o, of(CheckKind::positive, "a")));
+    CHECK_FALSE(holds(o, of(CheckKind::positive, "b")));
+    CHECK_FALSE(holds(o, of(CheckKind::negative, "b")));
+
+    CheckSpec range = of(CheckKind::in_range, "a");
+    range.range = {0.9, 2.11};
+    CHECK(holds(o, range));
+    range.range = {0.9, 2.09};
+    CHECK_FALSE(holds(o, range));
+
+    CheckSpec exceeds = of(CheckKind::exceeds, "a");
+    exceeds.other_variant = "b";
+    CHECK_FALSE(holds(o, exceeds));
+    exceeds.where = {0, 0};
+    CHECK(holds(o, exceeds));
+
+    CheckSpec ratio = of(CheckKind::ratio, "b");
+    ratio.other_variant = "a";
+    ratio.where = {1, 1};
+    ratio.range = {2.05 / 2.1, 2.25 / 1.9};
+    CHECK(holds(o, ratio));
+    ratio.range[1] -= 0.01;
+    CHECK_FALSE(holds(o, ratio));
+
+    CheckSpec resolved = of(CheckKind::resolved, "a");
+    resolved.relative = 0.1;
+    CHECK(holds(o, resolved));
+    resolved.relative = 0.09;
+    CHECK_FALSE(holds(o, resolved));
+}
+
+TEST_CASE("checks: a reference curve has to have a value where it is compared") {
+    ExperimentOutcome o = measured({1.0, 2.0}, {1.0, 2.0});
+    o.experiment.references = {{.name = "r", .x = {0.0}, .y = {1.05}}};
+    CheckSpec within{
+        .kind = CheckKind::within, .metric = "m", .reference = "r", .relative = 0.15, .where = {0, 0}};
+    CHECK(holds(o, within));
+    within.relative = 0.14;  // 0.9 is 14.3 % away
+    CHECK_FALSE(holds(o, within));
+    within.relative = 0.15;
+    within.where = {0, 1};
+    CHECK_FALSE(holds(o, within));
+}
+
+TEST_CASE("checks: what is no certified equilibrium proves nothing") {
+    ExperimentOutcome o = measured({1.0}, {1.0});
+    const CheckSpec positive{.kind = CheckKind::positive, .metric = "m"};
+    CHECK(holds(o, positive));
+    o.series[1].y[0].certain = false;
+    CHECK_FALSE(holds(o, positive));
+}
+
+TEST_CASE(
+    "shape measures: a cylinder has mean curvature 1/(2R), a saddle and a sphere their Gauss curvature") {
+    const PrintMesh layout = sheet(20.0, 20.0, 40);
+    const LayoutRing middle{.middle = Vec2(10, 10), .outer = 6.0};
+    const double radius = 12.0;
+    const auto rolled = placed(layout, [&](const Vec2& p) {
+        const double angle = (p.x() - 10.0) / radius;
+        return Vec3(radius * std::sin(angle), p.y(), radius * std::cos(angle));  // the back is concave
+    });
+    const IntegratedCurvature cylinder = integrated_curvature(layout, rolled, middle);
+    CHECK(cylinder.gauss == doctest::Approx(0.0).epsilon(1e-10));
+    // The ring cuts through elements of 0.5 mm on a circumference of 38 mm: some per cent of its area.
+    CHECK(cylinder.mean == doctest::Approx(0.5 / radius).epsilon(0.03));
+
+    const auto graph = [&](double sign) {
+        return placed(layout, [&](const Vec2& p) {
+            const double x = p.x() - 10.0;
+            const double y = p.y() - 10.0;
+            return Vec3(x, y, -0.5 * (x * x + sign * y * y) / 100.0);
+        });
+    };
+    // z = (x^2 +- y^2)/2R with R = 100: K = +-1/R^2 up to (r/R)^2 < 0.4 % twice.
+    const IntegratedCurvature sphere = integrated_curvature(layout, graph(1.0), middle);
+    CHECK(sphere.gauss == doctest::Approx(1e-4).epsilon(0.04));
+    CHECK(sphere.mean == doctest::Approx(0.01).epsilon(0.04));
+    const IntegratedCurvature saddle = integrated_curvature(layout, graph(-1.0), middle);
+    CHECK(saddle.gauss == doctest::Approx(-1e-4).epsilon(0.04));
+    CHECK(std::abs(saddle.mean) < 1e-4);
+    CHECK(std::isnan(integrated_curvature(layout, rolled, {.inner = 500.0, .outer = 600.0}).gauss));
+}
+
+TEST_CASE("shape measures: the stretch around the middle is that of the shape, whatever the radial one") {
+    const PrintMesh layout = sheet(20.0, 20.0, 20);
+    const auto shape = placed(layout, [](const Vec2& p) {
+        // Polar coordinates around (10, 10): radius r -> 0.5 r, angle kept: both stretches are 0.5.
+        const Vec2 q = 0.5 * (p - Vec2(10, 10));
+        return Vec3(q.x(), q.y(), 0.0);
+    });
+    const LayoutRing ring{.middle = Vec2(10, 10), .inner = 3.0, .outer = 9.0};
+    CHECK(transverse_stretch(layout, shape, ring) == doctest::Approx(0.5).epsilon(1e-12));
+    const auto cone = placed(layout, [](const Vec2& p) {
+        const Vec2 q = p - Vec2(10, 10);
+        return Vec3(q.x(), q.y(), 2.0 * q.norm());  // longer outward, not around
+    });
+    // Within an element around and outward mix: (element/radius)^2.
+    CHECK(transverse_stretch(layout, cone, ring) == doctest::Approx(1.0).epsilon(0.02));
+}
+
+TEST_CASE("shape measures: the silhouette of a roll is its circle") {
+    PrintMesh layout = sheet(30.0, 5.0, 5);
+    for (Print& print : layout.print) print.front = 0.6;
+    const auto rolled = placed(layout, [](const Vec2& p) {
+        return Vec3(7.0 * std::sin(p.x() / 7.0), p.y(), 7.0 * std::cos(p.x() / 7.0));
+    });
+    CHECK(silhouette_curvature(layout, rolled) == doctest::Approx(1.0 / 7.0).epsilon(1e-9));
+}
+
+TEST_CASE("shape measures: strips are chosen by name and by where they lie, and cut to their middle") {
+    PrintMesh layout = sheet(20.0, 20.0, 20);
+    for (const double y : {2.0, 10.0, 18.0})
+        layout.strips.push_back({.id = fmt::format("row-{:g}", y),
+                                 .centreline = {points_on_mesh(layout.mesh, {{5.0, y}, {15.0, y}}, 41)}});
+    // A strip in the middle that is as long as the print is not inside half of it.
+    CHECK(chosen_strips(layout, "", 1.0) == std::vector<int>{0, 1, 2});
+    CHECK(chosen_strips(layout, "row-1", 1.0) == std::vector<int>{1, 2});
+    CHECK(chosen_strips(layout, "", 0.5).empty());
+    layout.strips.push_back(
+        {.id = "short", .centreline = {points_on_mesh(layout.mesh, {{9, 10}, {11, 10}}, 5)}});
+    CHECK(chosen_strips(layout, "", 0.5) == std::vector<int>{3});
+    CHECK(with_middles(layout, 0.5).strips[0].centreline[0].size() == 21);
+}
+
+TEST_CASE("experiments: a mistake is named with its place") {
+    const std::string good =
+        "scene = \"scene.toml\"\n[[metric]]\nname = \"m\"\n[[check]]\nkind = \"positive\"\nmetric = \"m\"\n";
+    CHECK(ExperimentFolder(good).problem().empty());
+    const auto problem = [&](const std::string& text) { return ExperimentFolder(text).problem(); };
+    CHECK(problem("").find("[[metric]]") != std::string::npos);
+    CHECK(problem("titel = \"x\"\n" + good).find("did you mean title") != std::string::npos);
+    CHECK(problem("meshes = [1, 0.5, 0.4]\n" + good).find("fall by one factor") != std::string::npos);
+    CHECK(problem("meshes = [1]\n" + good).find("fewer than two") != std::string::npos);
+    CHECK(problem(good + "variants = [\"b\"]\n").find("no variant \"b\"") != std::string::npos);
+    CHECK(problem(good + "[[check]]\nkind = \"exceeds\"\nmetric = \"m\"\n").find("compares with nothing") !=
+          std::string::npos);
+    CHECK(problem(good + "[[check]]\nkind = \"within\"\nmetric = \"m\"\nreference = \"n\"\n")
+              .find("no metric or reference \"n\"") != std::string::npos);
+    CHECK(problem(good + "[[picture]]\nvariant = \"b\"\n").find("no variant \"b\"") != std::string::npos);
+}
