@@ -17,7 +17,7 @@ constexpr std::string_view direction_fields[] = {"parallel", "radial", "circular
 constexpr double trace_step = 0.25;     // mm
 constexpr double closest_share = 0.75;  // of the spacing: where a line ends
 constexpr double smallest_room = 0.1;   // mm, between strips
-constexpr std::size_t most_points = 400000;
+constexpr std::size_t most_traced_points = 400000;
 
 /// Directions and distances over the layout.
 class StripField {
@@ -120,7 +120,7 @@ class StripTracer {
             if (!field_.holds(seed) || points_.any_within(seed, 0.98 * field_.spacing(seed))) continue;
             Polyline line = trace(seed);
             for (const Vec2& p : line) points_.add(p);
-            if (points_.count() > most_points)
+            if (points_.count() > most_traced_points)
                 throw InputError({.key = "spacing_mm"}, "gives more strips than anybody prints",
                                  "Give a larger spacing_mm or a smaller outer_mm.");
             add_seeds(line, seeds);
@@ -141,7 +141,7 @@ class StripTracer {
 
     /// Goes on from the line's last point until there is no room.
     void follow(Polyline& line, Vec2 along) const {
-        while (line.size() < most_points) {
+        while (line.size() < most_traced_points) {
             const Vec2 next = field_.step(line.back(), along);
             const double room = closest_share * field_.spacing(next);
             if (!field_.holds(next) || points_.any_within(next, room) || meets_itself(line, next, room))
