@@ -13,6 +13,7 @@ namespace {
 
 constexpr double flat_below = 1e-6;                // 1/mm: a radius of a kilometre
 constexpr double most_turn = 30.0 * M_PI / 180.0;  // of a piece in the layout
+constexpr int most_rounds = 30;                    // of a fit
 constexpr std::size_t fewest_points = 5;           // of a piece that is cut off for its turn
 
 /// A number with its rate of change while the shape moves. What depends on the shape is written once, for
@@ -167,8 +168,9 @@ MeasuredCircle<double> fit_smooth(StripSamples<double> piece) {
     std::vector<Vec3> points(piece.size());
     for (std::size_t i = 0; i < piece.size(); ++i) points[i] = piece[i].point;
     CircleFit fit = fit_circle(points);
-    // Each round shrinks the error by sagitta / radius, about 1/500 for elements of 10 degrees.
-    for (int round = 0; round < 6 && fit.valid && fit.curvature > flat_below; ++round) {
+    // Each round shrinks the error by sagitta / radius, about 1/500 for elements of 10 degrees; by less where
+    // the points hardly leave a line, so that little holds the plane.
+    for (int round = 0; round < most_rounds && fit.valid && fit.curvature > flat_below; ++round) {
         const double before = fit.curvature;
         const Vec3 centre = fit.centre();
         for (std::size_t i = 0; i < piece.size(); ++i)
@@ -192,7 +194,8 @@ MeasuredCircle<MovingNumber> fit_smooth(StripSamples<MovingNumber> piece) {
     if (fit.valid && fit.curvature > flat_below) {
         std::vector<Vec3> points(piece.size());
         std::vector<Vec3> velocities(piece.size());
-        for (int round = 0; round < 8; ++round) {
+        for (int round = 0; round < most_rounds; ++round) {
+            const double before = rate.curvature;
             for (std::size_t i = 0; i < piece.size(); ++i) {
                 const SpacePoint<MovingNumber> point = on_smooth_line(
                     piece[i], with_rate(fit.centre(), rate.centre), with_rate(fit.normal, rate.normal));
@@ -200,6 +203,7 @@ MeasuredCircle<MovingNumber> fit_smooth(StripSamples<MovingNumber> piece) {
                 velocities[i] = rates_of(point);
             }
             rate = circle_rate(fit, points, velocities);
+            if (std::abs(rate.curvature - before) <= 1e-13 * std::abs(before)) break;
         }
     }
     return {with_rate(fit.curvature, rate.curvature), with_rate(fit.centre(), rate.centre),

@@ -78,7 +78,7 @@ TEST_CASE("gradient by parameter: it is that of the fabric's law, close to the l
         const std::vector<ModelParameter> parameters = model_parameters(triangle.model.input());
         for (std::size_t p = 0; p < law_parameter_count; ++p) {
             CAPTURE(margin);
-            CAPTURE(names[p]);
+            CAPTURE(std::string(names[p]));
             const GradientChange change = gradient_change(
                 triangle.model, triangle.x, parameter_named(parameters, std::string("material.") + names[p]));
             const Eigen::VectorXd exact = exact_change(triangle, p);
@@ -90,7 +90,7 @@ TEST_CASE("gradient by parameter: it is that of the fabric's law, close to the l
 
 TEST_CASE("gradient by parameter: energies of a parameter's first power change by themselves") {
     for (const SetUp& set_up : set_ups()) {
-        CAPTURE(set_up.name);
+        CAPTURE(std::string(set_up.name));
         const Model model(set_up.input);
         const Eigen::VectorXd x = rolled(model, {});
         const std::vector<ModelParameter> parameters = model_parameters(model.input());
@@ -99,13 +99,14 @@ TEST_CASE("gradient by parameter: energies of a parameter's first power change b
         const Eigen::VectorXd exact = model.gradient(x) - Model(limp).gradient(x);
         const GradientChange change =
             gradient_change(model, x, parameter_named(parameters, "material.fabric_bending_stiffness_n_mm"));
-        CHECK((change.gradient - exact).cwiseAbs().maxCoeff() < 1e-10 * model.typical_force(x));
+        CHECK((change.gradient - exact).cwiseAbs().maxCoeff() <
+              1e-10 * model.gradient(x).cwiseAbs().maxCoeff());
     }
 }
 
 TEST_CASE("gradient by parameter: all moduli and forces doubled are all forces doubled") {
     for (const SetUp& set_up : set_ups()) {
-        CAPTURE(set_up.name);
+        CAPTURE(std::string(set_up.name));
         ModelInput input = set_up.input;
         input.gravity = {0, 0, 0};
         input.table.present = false;
@@ -117,7 +118,8 @@ TEST_CASE("gradient by parameter: all moduli and forces doubled are all forces d
             if (parameter.unit != "MPa" && parameter.unit != "N mm") continue;
             sum += gradient_change(model, x, parameter).gradient;
         }
-        CHECK((sum - model.gradient(x)).cwiseAbs().maxCoeff() < 1e-8 * model.typical_force(x));
+        const Eigen::VectorXd all = model.gradient(x);
+        CHECK((sum - all).cwiseAbs().maxCoeff() < 1e-8 * all.cwiseAbs().maxCoeff());
     }
 }
 

@@ -44,7 +44,7 @@ void add_prestretch(const std::array<double, 2>& s, std::vector<ModelParameter>&
 double mean_over_print(const ModelInput& input, double Print::*front, double Print::*back) {
     double sum = 0.0;
     double area = 0.0;
-    for (int t = 0; t < input.mesh.triangle_count(); ++t) {
+    for (int t = 0; t < static_cast<int>(input.print.size()); ++t) {
         for (double Print::*side : {front, back}) {
             const double value = input.print[static_cast<std::size_t>(t)].*side;
             if (value == 0.0) continue;
