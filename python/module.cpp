@@ -14,6 +14,7 @@
 #include "ruche/scene/read_scene.hpp"
 #include "ruche/scene/simulate.hpp"
 #include "ruche/statics/equilibrium.hpp"
+#include "ruche/study/sensitivity/sensitivity.hpp"
 
 namespace py = pybind11;
 using namespace py::literals;
@@ -351,7 +352,21 @@ void bind_solve(py::module_& m) {
         .def_property_readonly(
             "report",
             [](const Result& r) { return py::module_::import("json").attr("loads")(report_json(r)); },
-            "What report.json holds, as a dict.");
+            "What report.json holds, as a dict.")
+        .def(
+            "sensitivity",
+            [](const Result& r) -> py::object {
+                std::optional<Sensitivities> found;
+                {
+                    const py::gil_scoped_release release;
+                    found = sensitivities(r);
+                }
+                if (!found) return py::none();
+                return py::module_::import("json").attr("loads")(sensitivity_json(*found, r.scene.file));
+            },
+            "d ln measure / d ln parameter of the shape, as a dict like that of `ruche sensitivity -o FILE`; "
+            "None "
+            "for a shape that is not stable.");
     m.def(
         "simulate",
         [](const std::string& path, const std::vector<std::string>& set) {

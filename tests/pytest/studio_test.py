@@ -94,7 +94,7 @@ class Studio:
 
     def close(self):
         self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(30)
+        return self.process.wait(600)
 
 
 @pytest.fixture

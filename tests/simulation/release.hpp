@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -45,6 +46,24 @@ inline Equilibrium release(const PrintMesh& layout, ModelInput input = {}, const
 
 inline bool certain(const Equilibrium& state) {
     return state.status == SolveStatus::converged && state.stable;
+}
+
+/// Timoshenko's bimetal for plies of true thickness (van Rees 2017 energy): curvature of a narrow strip,
+/// 1/mm.
+inline double bimetal_curvature(const Material& m, double s, double tp) {
+    const double p = m.plastic_youngs_modulus;
+    const double q = m.fabric_youngs_modulus * s * s;
+    const double tf = m.fabric_thickness;
+    const double e = (s * s - 1.0) / (2.0 * s * s);
+    const double b = 6.0 * p * q * tp * tf * (tp + tf) * e /
+                     (q * q * std::pow(tf, 4) + p * p * std::pow(tp, 4) +
+                      2.0 * p * q * tf * tp * (2.0 * tf * tf + 3.0 * tf * tp + 2.0 * tp * tp));
+    // a* minimises the energy for this b: sum of E sqrt(det) (t (a - rest)/rest^2 / ... ) is linear in a.
+    const double fabric_rest = 1.0 / (s * s);
+    // Membrane equilibrium: P tp (a - 1) - P tp^2 b + q' tf (a - rest) + q' tf^2 b = 0 with q' = E_f s^2.
+    const double a =
+        (p * tp + q * tf * fabric_rest + p * tp * tp * (-b) - q * tf * tf * (-b)) / (p * tp + q * tf);
+    return b / a;
 }
 
 }  // namespace ruche::test

@@ -11,24 +11,6 @@ using namespace ruche::test;
 
 namespace {
 
-/// Timoshenko's bimetal for plies of true thickness (van Rees 2017 energy): curvature of a narrow strip,
-/// 1/mm.
-double bimetal_curvature(const Material& m, double s, double tp) {
-    const double p = m.plastic_youngs_modulus;
-    const double q = m.fabric_youngs_modulus * s * s;
-    const double tf = m.fabric_thickness;
-    const double e = (s * s - 1.0) / (2.0 * s * s);
-    const double b = 6.0 * p * q * tp * tf * (tp + tf) * e /
-                     (q * q * std::pow(tf, 4) + p * p * std::pow(tp, 4) +
-                      2.0 * p * q * tf * tp * (2.0 * tf * tf + 3.0 * tf * tp + 2.0 * tp * tp));
-    // a* minimises the energy for this b: sum of E sqrt(det) (t (a - rest)/rest^2 / ... ) is linear in a.
-    const double fabric_rest = 1.0 / (s * s);
-    // Membrane equilibrium: P tp (a - 1) - P tp^2 b + q' tf (a - rest) + q' tf^2 b = 0 with q' = E_f s^2.
-    const double a =
-        (p * tp + q * tf * fabric_rest + p * tp * tp * (-b) - q * tf * tf * (-b)) / (p * tp + q * tf);
-    return b / a;
-}
-
 double strip_curvature(PrintMesh layout, const ModelInput& input = {}) {
     add_strip(layout, "strip", {0.0, 0.5}, {30.0, 0.5});
     const Equilibrium state = release(layout, input);

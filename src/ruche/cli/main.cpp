@@ -57,6 +57,7 @@ int run(int count, char** arguments) {
     ruche::add_studio(program, action);
     ruche::add_render(program, action);
     ruche::add_compare(program, action);
+    ruche::add_sensitivity(program, action);
     ruche::add_pattern(program, action);
     ruche::add_bench(program, action);
     ruche::add_calibrate(program, action);

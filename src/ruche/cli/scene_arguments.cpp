@@ -1,6 +1,7 @@
 #include "ruche/cli/scene_arguments.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 #include "ruche/scene/read_scene.hpp"
 
@@ -33,6 +34,12 @@ Scene read_scene(const SceneArguments& arguments) {
             overrides.push_back({shortcut.path, shortcut.value, shortcut.option + " " + shortcut.value});
     for (const std::string& change : arguments.changes) overrides.push_back(parse_override(change));
     return read_scene_or_drawing(arguments.file, overrides);
+}
+
+std::string state_path(const std::string& result) {
+    std::error_code ignored;
+    const std::filesystem::path path(result);
+    return std::filesystem::is_directory(path, ignored) ? (path / "state.ruche").string() : result;
 }
 
 bool is_drawing(const SceneArguments& arguments) { return !arguments.file.ends_with(".toml"); }

@@ -35,4 +35,7 @@ Scene read_scene(const SceneArguments& arguments);
 /// Whether a drawing was given directly, so that nearly everything is assumed.
 bool is_drawing(const SceneArguments& arguments);
 
+/// The state file of a result's folder, or the file itself.
+std::string state_path(const std::string& result);
+
 }  // namespace ruche

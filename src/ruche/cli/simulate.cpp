@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -35,13 +34,6 @@ struct SimulateArguments {
 static void print_list(const char* title, const std::vector<std::string>& texts) {
     if (!texts.empty()) fmt::print("{}\n", title);
     for (const std::string& text : texts) fmt::print("  {}\n", text);
-}
-
-/// The state file of a result folder, or the file itself.
-static std::string state_path(const std::string& result) {
-    std::error_code ignored;
-    const std::filesystem::path path(result);
-    return std::filesystem::is_directory(path, ignored) ? (path / "state.ruche").string() : result;
 }
 
 /// "0.0512 to 0.0531 /mm (positive: ...)" over the strips that have a centre line.

@@ -24,6 +24,7 @@ void add_studio(CLI::App& program, Action& action);
 void add_cards(CLI::App& program, Action& action);
 void add_render(CLI::App& program, Action& action);
 void add_virtual_test(CLI::App& program, Action& action);
+void add_sensitivity(CLI::App& program, Action& action);
 void add_validate(CLI::App& program, Action& action);
 void add_template(CLI::App& program, Action& action);
 

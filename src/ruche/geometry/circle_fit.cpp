@@ -103,6 +103,67 @@ PlaneCircle geometric_fit(const Points2& points, PlaneCircle circle) {
     return circle;
 }
 
+/// Mean of the points and scatter about it, with their rates.
+struct Scatter {
+    Vec3 mean = Vec3::Zero();
+    Vec3 mean_rate = Vec3::Zero();
+    Mat3 moments = Mat3::Zero();
+    Mat3 moments_rate = Mat3::Zero();
+
+    Scatter(std::span<const Vec3> points, std::span<const Vec3> velocities) {
+        const auto count = static_cast<double>(points.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            mean += points[i] / count;
+            mean_rate += velocities[i] / count;
+        }
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Vec3 x = points[i] - mean;
+            const Vec3 rate = velocities[i] - mean_rate;
+            moments += x * x.transpose();
+            moments_rate += x * rate.transpose() + rate * x.transpose();
+        }
+    }
+
+    /// Rate of the eigenvector `normal` of the smallest moment.
+    Vec3 normal_rate(const Vec3& normal) const {
+        const Eigen::SelfAdjointEigenSolver<Mat3> eigen(moments);  // ascending
+        Vec3 rate = Vec3::Zero();
+        for (int j = 1; j < 3; ++j) {
+            const Vec3 axis = eigen.eigenvectors().col(j);
+            rate +=
+                axis * (axis.dot(moments_rate * normal) / (eigen.eigenvalues()[0] - eigen.eigenvalues()[j]));
+        }
+        return rate;
+    }
+};
+
+/// Rates of (curvature, offset, angle) at offset = angle = 0, where the sum of squares is smallest: sum d d_a
+/// = 0 for each parameter a. The distance and its derivatives follow from k/2 d^2 + d = P.
+Vec3 plane_rate(double k, const Points2& points, const Points2& velocities) {
+    Mat3 jacobian = Mat3::Zero();
+    Vec3 right = Vec3::Zero();
+    const PlaneCircle circle{.curvature = k};
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+        const Vec2 x = points.col(i);
+        const Vec2 rate = velocities.col(i);
+        Vec3 slope;
+        const double d = circle.distance(x, &slope);
+        const double root = std::max(1.0 + k * d, 1e-12);
+        Mat3 p_second;
+        p_second << 0.0, x.x(), 0.0, x.x(), k, k * x.y(), 0.0, k * x.y(), -x.x();
+        const Vec3 p_mixed(x.dot(rate), k * rate.x(), rate.y());
+        const double d_rate = ((k * x.x() + 1.0) * rate.x() + k * x.y() * rate.y()) / root;
+        const Vec3 curvature_part = d * Vec3::UnitX();
+        const Mat3 second = (p_second - curvature_part * slope.transpose() -
+                             slope * curvature_part.transpose() - k * slope * slope.transpose()) /
+                            root;
+        const Vec3 mixed = (p_mixed - d_rate * curvature_part - k * d_rate * slope) / root;
+        jacobian += slope * slope.transpose() + d * second;
+        right -= slope * d_rate + d * mixed;
+    }
+    return jacobian.ldlt().solve(right);
+}
+
 }  // namespace
 
 double CircleFit::radius() const { return 1.0 / curvature; }
@@ -146,6 +207,30 @@ CircleFit fit_circle(std::span<const Vec3> points) {
     const double beside = (axes.col(2).transpose() * x).squaredNorm();
     fit.rms = size * std::sqrt((sum_of_squares(circle, flat) + beside) / static_cast<double>(count));
     return fit;
+}
+
+CircleRate circle_rate(const CircleFit& fit, std::span<const Vec3> points, std::span<const Vec3> velocities) {
+    const Scatter scatter(points, velocities);
+    const Vec3& normal = fit.normal;
+    const Vec3 normal_rate = scatter.normal_rate(normal);
+    // The plane's axes, which turn with the normal only: each by -normal (axis . normal_rate).
+    Eigen::Matrix<double, 3, 2> axes;
+    axes << -fit.inward, -normal.cross(fit.inward);
+    const Vec2 axes_rate = -axes.transpose() * normal_rate;
+    const auto count = static_cast<Eigen::Index>(points.size());
+    Points2 flat(2, count);
+    Points2 flat_rate(2, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+        const Vec3 x = points[i] - fit.point;
+        flat.col(i) = axes.transpose() * x;
+        flat_rate.col(i) = axes.transpose() * velocities[i] + axes_rate * normal.dot(x);
+    }
+    const double k = fit.curvature;
+    const Vec3 rate = plane_rate(k, flat, flat_rate);
+    // The centre lies at -(1/k + offset)(cos, sin)(angle) in the plane through the mean.
+    const Vec2 centre_rate(rate[0] / (k * k) - rate[1], -rate[2] / k);
+    const double lift_rate = normal.dot(scatter.mean_rate) + normal_rate.dot(scatter.mean - fit.centre());
+    return {.curvature = rate[0], .centre = axes * centre_rate + lift_rate * normal, .normal = normal_rate};
 }
 
 }  // namespace ruche

@@ -26,4 +26,15 @@ struct CircleFit {
 /// Chernov and Lesort 2005). Points that are not finite make the fit invalid.
 CircleFit fit_circle(std::span<const Vec3> points);
 
+/// How a fitted circle changes while its points move.
+struct CircleRate {
+    double curvature = 0.0;
+    Vec3 centre = Vec3::Zero();
+    Vec3 normal = Vec3::Zero();
+};
+
+/// The exact derivative of `fit` = fit_circle(points) along the points' velocities, from the conditions that
+/// plane and circle fulfil (implicit differentiation). For valid fits that are no lines.
+CircleRate circle_rate(const CircleFit& fit, std::span<const Vec3> points, std::span<const Vec3> velocities);
+
 }  // namespace ruche

@@ -32,6 +32,17 @@ struct StripMetrics {
 /// Stretch is that of the triangles (what the membrane energy measures), averaged along the line.
 std::vector<StripMetrics> measure_strips(const PrintMesh& layout, std::span<const Vec3> shape);
 
+/// How fast curvature and stretch of a strip change. NaN where there is none to measure; that of the
+/// curvature where a piece of the strip is straight: its circle has no centre.
+struct StripRates {
+    double curvature = 0.0;
+    double stretch = 0.0;
+};
+
+/// The exact derivative of measure_strips along the velocities of the vertices.
+std::vector<StripRates> strip_rates(const PrintMesh& layout, std::span<const Vec3> shape,
+                                    std::span<const Vec3> velocities);
+
 /// The released shape as a whole.
 struct ShapeMetrics {
     Vec3 box_min = Vec3::Zero();  ///< mm, of the shape as it lies in its coordinates

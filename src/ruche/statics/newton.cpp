@@ -17,14 +17,6 @@ namespace ruche {
 /// Largest component of the gradient, N.
 static double largest(const AssembledSums& sums) { return sums.gradient.cwiseAbs().maxCoeff(); }
 
-static std::vector<char> held_unknowns(const Model& model) {
-    std::vector<char> held(model.size(), 0);
-    for (const Support& support : model.input().supports) {
-        for (int c = 0; c < 3; ++c) held[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
-    }
-    return held;
-}
-
 Newton::Newton(const Model& model, const SolveOptions& options, const Control& control)
     : Newton(model, options, control, vertex_elimination_order(model.pattern())) {}
 

@@ -145,6 +145,14 @@ bool NewtonSystem::steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& di
     return true;
 }
 
+std::vector<char> held_unknowns(const Model& model) {
+    std::vector<char> held(model.size(), 0);
+    for (const Support& support : model.input().supports) {
+        for (int c = 0; c < 3; ++c) held[3 * support.vertex + c] |= support.fixed[c] ? 1 : 0;
+    }
+    return held;
+}
+
 double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian) {
     double sum = 0.0;
     for (int node = 0; node < pattern.node_count(); ++node) {

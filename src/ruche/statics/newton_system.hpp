@@ -45,6 +45,9 @@ class NewtonSystem {
     /// factor.
     [[nodiscard]] bool certify(const NewtonPoint& at);
 
+    /// Solves with the last matrix that could be factorised; one column per right-hand side.
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side) { return cholesky_.solve(right_hand_side); }
+
     /// A direction in which the exact Hessian curves down most, by inverse iteration from `direction`.
     [[nodiscard]] bool steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& direction);
 
@@ -81,6 +84,9 @@ class NewtonSystem {
     double share_ = 0.0;               // of the Gauss-Newton form in the matrix
     int factorizations_ = 0;
 };
+
+/// One flag per unknown: a support holds it.
+std::vector<char> held_unknowns(const Model& model);
 
 /// Mean magnitude of the diagonal of a Hessian, N/mm.
 double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian);

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
 #include <vector>
@@ -115,4 +116,43 @@ TEST_CASE("circle fit: too few, equal or non-finite points give no fit") {
     CHECK_FALSE(fit_circle(std::vector<Vec3>(5, Vec3(1, 2, 3))).valid);
     const double nan = std::numeric_limits<double>::quiet_NaN();
     CHECK_FALSE(fit_circle(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {2, nan, 0}}).valid);
+}
+
+TEST_CASE("circle fit: its rate of change is the derivative for moving points") {
+    std::mt19937 random(7);
+    std::normal_distribution<double> normal;
+    for (const double turn : {0.2, 1.0, 4.0, 15.0}) {
+        const double curvature = 0.08;
+        std::vector<Vec3> points = arc(curvature, turn / curvature, 25, tilted, away);
+        std::vector<Vec3> velocities;
+        for (Vec3& p : points) {
+            for (int c = 0; c < 3; ++c) p[c] += 1e-3 * normal(random);  // off the circle and its plane
+            velocities.emplace_back(normal(random), normal(random), normal(random));
+        }
+        const auto moved = [&](double t) {
+            std::vector<Vec3> at = points;
+            for (std::size_t i = 0; i < at.size(); ++i) at[i] += t * velocities[i];
+            return fit_circle(at);
+        };
+        const CircleFit fit = moved(0.0);
+        const CircleRate rate = circle_rate(fit, points, velocities);
+        // Central differences with Richardson extrapolation; the fit stops at rounding.
+        const auto derivative = [&](const std::function<Vec3(const CircleFit&)>& of) -> Vec3 {
+            const double h = 1e-4 * turn;
+            const Vec3 wide = (of(moved(h)) - of(moved(-h))) / (2.0 * h);
+            const Vec3 narrow = (of(moved(0.5 * h)) - of(moved(-0.5 * h))) / h;
+            return (4.0 * narrow - wide) / 3.0;
+        };
+        const auto same_side = [&](const CircleFit& f) -> Vec3 {
+            return f.normal.dot(fit.normal) < 0.0 ? Vec3(-f.normal) : f.normal;
+        };
+        CAPTURE(turn);
+        const double curvature_rate =
+            derivative([](const CircleFit& f) { return Vec3(f.curvature, 0, 0); }).x();
+        CHECK(rate.curvature == doctest::Approx(curvature_rate).epsilon(1e-7));
+        const Vec3 centre = derivative([](const CircleFit& f) { return f.centre(); });
+        CHECK((rate.centre - centre).norm() < 1e-7 * centre.norm());
+        const Vec3 plane = derivative(same_side);
+        CHECK((rate.normal - plane).norm() < 1e-7 * plane.norm());
+    }
 }

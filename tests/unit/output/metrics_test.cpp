@@ -218,3 +218,47 @@ TEST_CASE("shape metrics: box and areas") {
     CHECK(m.area == doctest::Approx(30));
     CHECK(m.printed_area == doctest::Approx(59.5));
 }
+
+TEST_CASE("strip metrics: their rates are the derivatives along the vertices' velocities") {
+    PrintMesh mesh = strip_mesh(20, 20, 20, 20, Kind::irregular);
+    add_strip(mesh, 41, [](double u) { return Vec2(2 + 16 * u, 1.0); });
+    add_strip(mesh, 41, [](double u) { return Vec2(3 + 9 * u, -4 + 9 * u); });  // slanted
+    add_strip(mesh, 81, [](double u) {                                          // in several pieces
+        return Vec2(10 + 6 * std::cos(M_PI * u), 6 * std::sin(M_PI * u));
+    });
+    mesh.strips.push_back({.id = "blob"});
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    std::vector<Vec3> velocities;
+    for (std::size_t v = 0; v < mesh.mesh.vertices.size(); ++v)
+        velocities.emplace_back(normal(random), normal(random), normal(random));
+    for (const double curvature : {0.1, -0.2}) {
+        CAPTURE(curvature);
+        const std::vector<Vec3> rest = map_vertices(mesh, [&](const Vec2& x) {
+            return Vec3(roll(curvature)(x) + 0.02 * Vec3(0, 0, std::sin(x.y())));
+        });
+        const auto moved = [&](double t) {
+            std::vector<Vec3> shape = rest;
+            for (std::size_t v = 0; v < shape.size(); ++v) shape[v] += t * velocities[v];
+            return measure_strips(mesh, shape);
+        };
+        const std::vector<StripRates> rates = strip_rates(mesh, rest, velocities);
+        REQUIRE(rates.size() == 4);
+        const double h = 4e-5;  // the plane of a short arc turns fast: small steps
+        const auto wide = std::array{moved(h), moved(-h)};
+        const auto narrow = std::array{moved(0.5 * h), moved(-0.5 * h)};
+        for (std::size_t i = 0; i < 3; ++i) {
+            CAPTURE(i);
+            const auto richardson = [&](double StripMetrics::*of) {
+                const double coarse = (wide[0][i].*of - wide[1][i].*of) / (2 * h);
+                const double fine = (narrow[0][i].*of - narrow[1][i].*of) / h;
+                return (4 * fine - coarse) / 3;
+            };
+            CHECK(rates[i].curvature == doctest::Approx(richardson(&StripMetrics::curvature)).epsilon(1e-7));
+            CHECK(rates[i].stretch == doctest::Approx(richardson(&StripMetrics::stretch)).epsilon(1e-7));
+        }
+        CHECK(std::isnan(rates[3].curvature));
+    }
+    const std::vector<Vec3> flat = map_vertices(mesh, [](const Vec2& x) { return Vec3(x.x(), x.y(), 0); });
+    CHECK(std::isnan(strip_rates(mesh, flat, velocities)[0].curvature));
+}
