@@ -254,3 +254,21 @@ TEST_CASE("experiments: a mistake is named with its place") {
               .find("no metric or reference \"n\"") != std::string::npos);
     CHECK(problem(good + "[[picture]]\nvariant = \"b\"\n").find("no variant \"b\"") != std::string::npos);
 }
+
+TEST_CASE("experiments: all that come with the source can be read, with every scene of every run") {
+    const std::string folder = RUCHE_TEST_DATA "/../../validation";
+    const std::vector<std::string> names = experiment_names(folder);
+    CHECK(names.size() >= 10);
+    for (const std::string& name : names) {
+        const Experiment e = read_experiment(folder + "/" + name);
+        CHECK_FALSE(e.title.empty());
+        CHECK_FALSE(e.shows.empty());
+        CHECK_FALSE(e.known.empty());
+        for (const CheckSpec& check : e.checks) CHECK_FALSE(check.says.empty());
+        const std::vector<ValidationRun> runs = expand(e, false, "test");
+        CHECK(runs.size() >= 2);
+        CHECK(runs.front().key != runs.back().key);
+        CHECK(runs.front().key == expand(e, false, "test").front().key);
+        CHECK(runs.front().key != expand(e, false, "another program").front().key);
+    }
+}
