@@ -15,7 +15,7 @@ COARSE = ["--set", "fabric.margin_mm=1", "--set", "mesh.size_mm=1"]
 
 def sensitivity(*arguments, cwd):
     return subprocess.run(
-        [PROGRAM, "sensitivity", *arguments], cwd=cwd, capture_output=True, text=True, timeout=300
+        [PROGRAM, "sensitivity", *arguments], cwd=cwd, capture_output=True, text=True, timeout=600
     )
 
 
@@ -83,7 +83,7 @@ def test_wrong_measures_are_refused_before_anything_is_released(folder):
 
 def test_several_measures_and_the_start_from_a_result(folder):
     first = subprocess.run([PROGRAM, "simulate", "d.svg", *COARSE, "-o", "out", "--set", "output.picture=false", "--set",
-                            "output.page=false"], cwd=folder, capture_output=True, text=True, timeout=300)
+                            "output.page=false"], cwd=folder, capture_output=True, text=True, timeout=600)
     assert first.returncode == 0, first.stderr
     run = sensitivity("d.svg", *COARSE, "--metric", "height", "--metric", "curvature.strip", "--start", "out", cwd=folder)
     assert run.returncode == 0, run.stderr
