@@ -161,6 +161,7 @@ def main():
         "failures": failures,
         "parameters": rows,
         "curves": {key: max(c[key] for c in curves_checked) for key in (curves_checked[0] if curves_checked else {})},
+        "curves_within_1_percent": sum(c["largest_relative_error"] <= 0.01 for c in curves_checked),
         "seconds_per_calibration": statistics.median(r["seconds"] for r in results),
     }
     (arguments.folder / arguments.mode / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
@@ -174,6 +175,8 @@ def main():
         )
     for key, value in summary["curves"].items():
         print(f"tension curves of {len(curves_checked)} fitted cards, {key.replace('_', ' ')}: {percent(value)}")
+    if curves_checked:
+        print(f"all seven curves within 1 %: {summary['curves_within_1_percent']} of {len(curves_checked)} cards")
     enough = all(row["coverage"] >= WANTED_COVERAGE for row in rows.values())
     sys.exit(0 if enough and not failures else 1)
 
