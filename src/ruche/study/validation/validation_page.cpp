@@ -65,7 +65,9 @@ std::string plots(const ExperimentOutcome& o) {
         std::size_t colour = 0;
         for (const ValueSeries& s : o.series) {
             if (s.metric != metric.name) continue;
-            PlotSeries curve{.label = first ? s.variant : fmt::format("{}, {}", s.variant, metric.name),
+            PlotSeries curve{.label = e.variants.size() == 1 ? metric.name
+                                      : first                ? s.variant
+                                                             : fmt::format("{}, {}", s.variant, metric.name),
                              .colour = plot_colour(colour++),
                              .x = s.x,
                              .dashed = !first,
