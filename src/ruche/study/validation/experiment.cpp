@@ -16,15 +16,15 @@ namespace {
 namespace fs = std::filesystem;
 
 template <class Spec>
-const Spec* named(const std::vector<Spec>& list, const std::string& wanted) {
+const Spec* spec_named(const std::vector<Spec>& list, const std::string& wanted) {
     const auto found = std::ranges::find(list, wanted, &Spec::name);
     return found == list.end() ? nullptr : &*found;
 }
 
 /// The entries of a list, each read by `read_item(item, path)`; nothing where the key is not there.
 template <class Value, class ReadItem>
-std::vector<Value> list_of(TableReader& reader, std::string_view key, const char* expected,
-                           const ReadItem& read_item) {
+std::vector<Value> node_list(TableReader& reader, std::string_view key, const char* expected,
+                             const ReadItem& read_item) {
     const Node* node = reader.take(key);
     if (node == nullptr) return {};
     const std::string path = reader.path_of(key);
@@ -36,17 +36,17 @@ std::vector<Value> list_of(TableReader& reader, std::string_view key, const char
     return values;
 }
 
-std::vector<double> numbers_of(TableReader& reader, std::string_view key) {
-    return list_of<double>(reader, key, "a list of numbers", [](const Node& item, const std::string& path) {
+std::vector<double> number_list(TableReader& reader, std::string_view key) {
+    return node_list<double>(reader, key, "a list of numbers", [](const Node& item, const std::string& path) {
         return read_value(item, {.key = "", .kind = FieldKind::number}, path);
     });
 }
 
-std::vector<std::string> texts_of(TableReader& reader, std::string_view key) {
-    return list_of<std::string>(reader, key, "a list of texts",
-                                [](const Node& item, const std::string& path) {
-                                    return read_value(item, {.key = "", .kind = FieldKind::text}, path);
-                                });
+std::vector<std::string> text_list(TableReader& reader, std::string_view key) {
+    return node_list<std::string>(reader, key, "a list of texts",
+                                  [](const Node& item, const std::string& path) {
+                                      return read_value(item, {.key = "", .kind = FieldKind::text}, path);
+                                  });
 }
 
 /// Reads each table of a list; `rest(reader, spec)` reads what is in no table of fields.
@@ -68,7 +68,7 @@ std::vector<Spec> specs_of(TableReader& reader, const char* key, const Rest& res
 template <class Spec>
 void require_named(const std::vector<Spec>& list, const std::string& wanted, const Place& place,
                    const char* what) {
-    if (named(list, wanted) != nullptr) return;
+    if (spec_named(list, wanted) != nullptr) return;
     std::vector<std::string_view> names;
     for (const Spec& spec : list) names.push_back(spec.name);
     throw InputError(place, fmt::format("there is no {} \"{}\"{}", what, wanted, did_you_mean(wanted, names)),
@@ -135,10 +135,12 @@ void check_names(const Experiment& e) {
 
 }  // namespace
 
-const MetricSpec* Experiment::metric(const std::string& wanted) const { return named(metrics, wanted); }
-const VariantSpec* Experiment::variant(const std::string& wanted) const { return named(variants, wanted); }
+const MetricSpec* Experiment::metric(const std::string& wanted) const { return spec_named(metrics, wanted); }
+const VariantSpec* Experiment::variant(const std::string& wanted) const {
+    return spec_named(variants, wanted);
+}
 const ReferenceCurve* Experiment::reference(const std::string& wanted) const {
-    return named(references, wanted);
+    return spec_named(references, wanted);
 }
 
 Experiment read_experiment(const std::string& folder) {
@@ -154,30 +156,30 @@ Experiment read_experiment(const std::string& folder) {
         table.read(e.pull.emplace());
         table.finish();
     }
-    if (reader.has("meshes")) e.meshes = numbers_of(reader, "meshes");
+    if (reader.has("meshes")) e.meshes = number_list(reader, "meshes");
     require_factor(e.meshes, reader.place_of_key("meshes"));
-    e.quick_meshes = numbers_of(reader, "quick_meshes");
+    e.quick_meshes = number_list(reader, "quick_meshes");
     if (e.quick_meshes.empty()) e.quick_meshes = {e.meshes[0], e.meshes[1]};
     require_factor(e.quick_meshes, reader.place_of_key("quick_meshes"));
     if (const Node* node = reader.take_table("sweep")) {
         TableReader table(*node, "sweep");
         table.read(e.sweep);
-        e.sweep.values = numbers_of(table, "values");
-        e.sweep.quick = numbers_of(table, "quick");
+        e.sweep.values = number_list(table, "values");
+        e.sweep.quick = number_list(table, "quick");
         if (e.sweep.quick.empty()) e.sweep.quick = e.sweep.values;
         table.finish();
         if (e.sweep.key.empty() || e.sweep.values.empty())
             throw InputError(place_of(*node, "sweep"), "needs a key and values");
     }
     e.variants = specs_of<VariantSpec>(
-        reader, "variant", [](TableReader& table, VariantSpec& v) { v.set = texts_of(table, "set"); });
+        reader, "variant", [](TableReader& table, VariantSpec& v) { v.set = text_list(table, "set"); });
     if (e.variants.empty()) e.variants.push_back({.name = "as the scene"});
     e.metrics = specs_of<MetricSpec>(reader, "metric", nothing);
     e.references = specs_of<ReferenceCurve>(reader, "reference", nothing);
     for (ReferenceCurve& curve : e.references) read_curve(curve, e, reader.place_of_key("reference"));
     e.pictures = specs_of<PictureSpec>(reader, "picture", nothing);
     e.checks = specs_of<CheckSpec>(
-        reader, "check", [](TableReader& table, CheckSpec& c) { c.variants = texts_of(table, "variants"); });
+        reader, "check", [](TableReader& table, CheckSpec& c) { c.variants = text_list(table, "variants"); });
     reader.finish();
     check_names(e);
     return e;

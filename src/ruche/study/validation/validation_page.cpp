@@ -11,11 +11,11 @@
 namespace ruche {
 namespace {
 
-std::string value_text(const Estimate& e) {
+std::string table_value(const Estimate& e) {
     return fmt::format("{:.5g} ± {:.2g}{}", e.value, e.uncertainty, e.certain ? "" : " (!)");
 }
 
-std::string mark(bool holds) {
+std::string verdict_cell(bool holds) {
     return holds ? "<td class=\"good\">holds</td>" : "<td class=\"bad\">does not hold</td>";
 }
 
@@ -40,7 +40,7 @@ std::string check_table(const ExperimentOutcome& o) {
         html += fmt::format(
             "<tr>{}<td>{}<details><summary><small>{} values</small></summary><small>{}</small>"
             "</details></td></tr>\n",
-            mark(c.holds), html_escaped(c.check.says), c.details.size(), details);
+            verdict_cell(c.holds), html_escaped(c.check.says), c.details.size(), details);
     }
     return html + "</table>\n";
 }
@@ -65,7 +65,9 @@ std::string plots(const ExperimentOutcome& o) {
         std::size_t colour = 0;
         for (const ValueSeries& s : o.series) {
             if (s.metric != metric.name) continue;
-            PlotSeries curve{.label = first ? s.variant : fmt::format("{}, {}", s.variant, metric.name),
+            PlotSeries curve{.label = e.variants.size() == 1 ? metric.name
+                                      : first                ? s.variant
+                                                             : fmt::format("{}, {}", s.variant, metric.name),
                              .colour = plot_colour(colour++),
                              .x = s.x,
                              .dashed = !first,
@@ -103,7 +105,7 @@ std::string value_table(const ExperimentOutcome& o) {
             html += fmt::format("<tr><td>{}</td>", html_escaped(variant.name));
             if (!e.sweep.key.empty()) html += fmt::format("<td class=\"n\">{:g}</td>", first.x[i]);
             for (const MetricSpec& m : e.metrics)
-                html += fmt::format("<td class=\"n\">{}</td>", value_text(o.of(variant.name, m.name).y[i]));
+                html += fmt::format("<td class=\"n\">{}</td>", table_value(o.of(variant.name, m.name).y[i]));
             html += "</tr>\n";
         }
     }
@@ -172,7 +174,7 @@ std::string choices(const Validation& v) {
                 continue;
             }
             const Estimate& base = o->of(o->experiment.variants.front().name, metric).y.front();
-            html += fmt::format("<td class=\"n\">{} ({:.3f})</td>", value_text(found->y.front()),
+            html += fmt::format("<td class=\"n\">{} ({:.3f})</td>", table_value(found->y.front()),
                                 found->y.front().value / base.value);
         }
         html += "</tr>\n";
@@ -180,7 +182,7 @@ std::string choices(const Validation& v) {
     return html + "</table>\n";
 }
 
-std::string section_of(const ExperimentOutcome& o) {
+std::string experiment_section(const ExperimentOutcome& o) {
     const Experiment& e = o.experiment;
     return fmt::format("<h2 id=\"{}\">{}</h2>\n", e.name, html_escaped(e.title)) + html_paragraph(e.shows) +
            check_table(o) + plots(o) + pictures(o) + value_table(o) + orders(o) +
@@ -207,7 +209,7 @@ std::string validation_page(const Validation& v) {
         "pictures and are not drawn.",
         v.quick ? "Quick subset: " : "", runs, work, v.jobs, v.computed, v.seconds));
     html += overview(v) + choices(v);
-    for (const ExperimentOutcome& o : v.experiments) html += section_of(o);
+    for (const ExperimentOutcome& o : v.experiments) html += experiment_section(o);
     return html_page("Ruche against the paper's experiments", html);
 }
 
