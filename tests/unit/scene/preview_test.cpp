@@ -27,7 +27,8 @@ TEST_CASE("preview: thin strips take a third of the elements, wide ones what was
         CAPTURE(width);
         const int full = scene_mesh(strips(width)).mesh.triangle_count();
         const int coarse = preview_triangles(strips(width));
-        CHECK(coarse < 0.5 * full);
+        // Elements twice as long are half as many, and each strip rounds their number up.
+        CHECK(coarse < 0.6 * full);
         if (width < 0.5) CHECK(coarse < full / 3);
         if (width >= 1.5) CHECK(coarse < 2500);
     }
