@@ -10,7 +10,7 @@
 #include "ruche/material/rod_section.hpp"
 #include "ruche/scene/read_scene.hpp"
 #include "ruche/scene/simulate.hpp"
-#include "ruche/study/validation/shape_measures.hpp"
+#include "ruche/study/validation/sheet_measures.hpp"
 
 using namespace ruche;
 using namespace ruche::test;

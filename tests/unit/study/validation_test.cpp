@@ -9,7 +9,7 @@
 
 #include "ruche/core/error.hpp"
 #include "ruche/meshing/structured.hpp"
-#include "ruche/study/validation/shape_measures.hpp"
+#include "ruche/study/validation/sheet_measures.hpp"
 
 using namespace ruche;
 

@@ -16,7 +16,7 @@
 #include "ruche/scene/write_scene.hpp"
 #include "ruche/study/calibration/moduli.hpp"
 #include "ruche/study/calibration/pull.hpp"
-#include "ruche/study/validation/shape_measures.hpp"
+#include "ruche/study/validation/sheet_measures.hpp"
 
 namespace ruche {
 namespace {

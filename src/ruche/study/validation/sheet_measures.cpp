@@ -1,4 +1,4 @@
-#include "ruche/study/validation/shape_measures.hpp"
+#include "ruche/study/validation/sheet_measures.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
