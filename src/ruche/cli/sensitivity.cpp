@@ -37,6 +37,7 @@ constexpr double shown_from = 5e-4;  // of a slope: less is 0.000 in the table
 static std::vector<int> chosen_measures(const std::vector<std::string>& wanted,
                                         const std::vector<ShapeMeasure>& measures) {
     std::vector<std::string_view> names;
+    names.reserve(measures.size());
     for (const ShapeMeasure& measure : measures) names.emplace_back(measure.name);
     std::vector<int> chosen;
     for (const std::string& name : wanted) {
@@ -59,6 +60,7 @@ static void check_measures(const SensitivityArguments& arguments, const Scene& s
     if (arguments.measures.empty()) return;
     const PrintMesh layout = scene_mesh(scene);
     std::vector<Vec3> flat;
+    flat.reserve(layout.mesh.vertices.size());
     for (const Vec2& p : layout.mesh.vertices) flat.emplace_back(p.x(), p.y(), 0.0);
     (void)chosen_measures(arguments.measures, ShapeMeasures(layout, flat).values());
 }

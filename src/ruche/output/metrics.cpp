@@ -247,10 +247,9 @@ template <class Number>
 void add_line(StripSamples<Number> line, StripSums<Number>& sums) {
     for (std::size_t i = 1; i < line.size(); ++i) {
         const Vec2 step = line[i].layout - line[i - 1].layout;
-        const Eigen::Matrix<Number, 2, 1> along = step.template cast<Number>();
         sums.printed += step.norm();
-        sums.released += Number(0.5) * Number((line[i - 1].deformation * along).norm() +
-                                              (line[i].deformation * along).norm());
+        for (const std::size_t end : {i - 1, i})
+            sums.released += Number(0.5) * (line[end].deformation * step.template cast<Number>()).norm();
     }
     for (const StripSamples<Number> piece : nearly_straight_pieces(line)) {
         const MeasuredCircle<Number> circle = fit_smooth(piece);

@@ -32,6 +32,7 @@ std::vector<Value> node_list(TableReader& reader, std::string_view key, const ch
         throw InputError(place_of(*node, path),
                          fmt::format("expected {}, found {}", expected, describe(*node)));
     std::vector<Value> values;
+    values.reserve(node->items.size());
     for (const Node& item : node->items) values.push_back(std::get<Value>(read_item(item, path)));
     return values;
 }
@@ -70,6 +71,7 @@ void require_named(const std::vector<Spec>& list, const std::string& wanted, con
                    const char* what) {
     if (spec_named(list, wanted) != nullptr) return;
     std::vector<std::string_view> names;
+    names.reserve(list.size());
     for (const Spec& spec : list) names.push_back(spec.name);
     throw InputError(place, fmt::format("there is no {} \"{}\"{}", what, wanted, did_you_mean(wanted, names)),
                      fmt::format("There are {}.", fmt::join(names, ", ")));

@@ -101,6 +101,7 @@ double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape
     if (!(sight.norm() > 0.0)) return nothing_there;
     sight.normalize();
     std::vector<Vec3> seen;
+    seen.reserve(printed.size());
     for (const int v : printed) seen.emplace_back(shape[v] - sight.dot(shape[v]) * sight);
     const CircleFit circle = fit_circle(seen);
     return circle.valid ? circle.curvature : nothing_there;
