@@ -48,8 +48,8 @@ std::vector<double> solved_again(const Studied& studied, const ModelParameter& p
     REQUIRE(certain(state));
     std::vector<double> values;
     const std::vector<Vec3> shape = positions(state, result.layout);
-    for (const ShapeMeasure& measure : ShapeMeasures(result.layout, shape).values())
-        values.push_back(measure.value);
+    const ShapeMeasures measures(result.layout, shape);
+    for (const ShapeMeasure& measure : measures.values()) values.push_back(measure.value);
     return values;
 }
 
