@@ -147,8 +147,8 @@ TEST_CASE("shape measures: their rates are derivatives, and no rigid motion chan
         std::vector<Vec3> shape = rest;
         for (std::size_t v = 0; v < shape.size(); ++v) shape[v] += t * velocities[v];
         std::vector<double> values;
-        const ShapeMeasures moved(layout, shape);
-        for (const ShapeMeasure& measure : moved.values()) values.push_back(measure.value);
+        const ShapeMeasures there(layout, shape);
+        for (const ShapeMeasure& measure : there.values()) values.push_back(measure.value);
         return values;
     };
     const ShapeMeasures measures(layout, rest);
