@@ -364,9 +364,8 @@ void bind_solve(py::module_& m) {
                 if (!found) return py::none();
                 return py::module_::import("json").attr("loads")(sensitivity_json(*found, r.scene.file));
             },
-            "d ln measure / d ln parameter of the shape, as a dict like that of `ruche sensitivity -o FILE`; "
-            "None "
-            "for a shape that is not stable.");
+            "d ln measure / d ln parameter, as a dict like the JSON of `ruche sensitivity`; None for a shape "
+            "that is not stable.");
     m.def(
         "simulate",
         [](const std::string& path, const std::vector<std::string>& set) {

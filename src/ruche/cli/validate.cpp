@@ -47,6 +47,9 @@ static std::vector<Experiment> chosen_experiments(const ValidateArguments& argum
     std::vector<Experiment> chosen;
     for (const std::string& name : arguments.names.empty() ? all : arguments.names) {
         Experiment e = read_experiment((std::filesystem::path(arguments.experiments) / name).string());
+        if (!arguments.names.empty() && arguments.quick && !e.quick)
+            throw InputError({.file = e.file}, fmt::format("\"{}\" takes no part in the quick subset", name),
+                             "Its claims need finer meshes: run it without --quick.");
         const bool in_set =
             arguments.set == "all" || (e.set == ExperimentSet::paper) == (arguments.set == "paper");
         // A name says enough; a set, and the quick subset, choose from all.

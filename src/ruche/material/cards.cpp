@@ -177,10 +177,14 @@ static MaterialCard parse_card(const Node& root) {
     return card;
 }
 
+bool is_card_path(std::string_view name_or_path) {
+    return name_or_path.ends_with(".toml") || name_or_path.find('/') != std::string_view::npos;
+}
+
 MaterialCard load_card(const std::string& name_or_path) {
-    const bool is_path = name_or_path.ends_with(".toml") || name_or_path.find('/') != std::string::npos;
-    const Node root =
-        is_path ? read_toml(name_or_path) : parse_toml(preset_text(name_or_path), "card " + name_or_path);
+    const Node root = is_card_path(name_or_path)
+                          ? read_toml(name_or_path)
+                          : parse_toml(preset_text(name_or_path), "card " + name_or_path);
     MaterialCard card = parse_card(root);
     if (card.name.empty()) card.name = name_or_path;
     return card;

@@ -41,7 +41,10 @@ std::vector<std::string> preset_names();
 /// nearest name.
 std::string preset_text(const std::string& name);
 
-/// A card by name, or from a TOML file when the text has a '/' or ends in ".toml". Throws InputError.
+/// Whether a card is named by the path of a file: it has a '/' or ends in ".toml".
+bool is_card_path(std::string_view name_or_path);
+
+/// A card by name, or from a file. Throws InputError.
 MaterialCard load_card(const std::string& name_or_path);
 
 /// A material for a certain pre-stretch, with the source of each of its values.

@@ -71,25 +71,23 @@ class StripField {
     const TracedStripsOptions& options_;
 };
 
-/// All points of lines so far, by cells as large as the largest distance asked for.
+/// Points in the order in which they came, by cells as large as the largest distance asked for.
 class PointCells {
   public:
     explicit PointCells(double size) : size_(size) {}
 
-    void add(const Vec2& p) {
-        cells_[cell(p)].push_back(p);
-        ++count_;
-    }
+    void add(const Vec2& p) { cells_[cell(p)].push_back({p, count_++}); }
     std::size_t count() const { return count_; }
 
-    bool any_within(const Vec2& p, double distance) const {
+    /// Whether one of the first `first` points is nearer to p.
+    bool any_within(const Vec2& p, double distance, std::size_t first) const {
         const auto [cx, cy] = cell(p);
         for (int i = cx - 1; i <= cx + 1; ++i) {
             for (int j = cy - 1; j <= cy + 1; ++j) {
                 const auto found = cells_.find({i, j});
                 if (found == cells_.end()) continue;
-                for (const Vec2& q : found->second)
-                    if ((p - q).squaredNorm() < distance * distance) return true;
+                for (const auto& [q, number] : found->second)
+                    if (number < first && (p - q).squaredNorm() < distance * distance) return true;
             }
         }
         return false;
@@ -101,14 +99,14 @@ class PointCells {
     }
 
     double size_;
-    std::map<std::pair<int, int>, std::vector<Vec2>> cells_;
+    std::map<std::pair<int, int>, std::vector<std::pair<Vec2, std::size_t>>> cells_;
     std::size_t count_ = 0;
 };
 
 class StripTracer {
   public:
     explicit StripTracer(const TracedStripsOptions& options)
-        : field_(options), points_(std::max(options.spacing, options.outer_spacing)) {}
+        : field_(options), reach_(std::max(options.spacing, options.outer_spacing)), points_(reach_) {}
 
     std::vector<Polyline> lines(const Vec2& first_seed) {
         std::deque<Vec2> seeds = {first_seed};
@@ -117,7 +115,7 @@ class StripTracer {
             const Vec2 seed = seeds.front();
             seeds.pop_front();
             // A hair less, so that a seed exactly beside a line is not too close to it.
-            if (!field_.holds(seed) || points_.any_within(seed, 0.98 * field_.spacing(seed))) continue;
+            if (!field_.holds(seed) || too_close(seed, 0.98 * field_.spacing(seed))) continue;
             Polyline line = trace(seed);
             for (const Vec2& p : line) points_.add(p);
             if (points_.count() > most_traced_points)
@@ -141,22 +139,21 @@ class StripTracer {
 
     /// Goes on from the line's last point until there is no room.
     void follow(Polyline& line, Vec2 along) const {
+        PointCells own(reach_);
+        for (const Vec2& p : line) own.add(p);
         while (line.size() < most_traced_points) {
             const Vec2 next = field_.step(line.back(), along);
             const double room = closest_share * field_.spacing(next);
-            if (!field_.holds(next) || points_.any_within(next, room) || meets_itself(line, next, room))
-                return;
+            // Its neighbours along the line are no reason to end.
+            const auto neighbours = static_cast<std::size_t>(2.0 * room / trace_step) + 1;
+            const std::size_t others = line.size() - std::min(neighbours, line.size());
+            if (!field_.holds(next) || too_close(next, room) || own.any_within(next, room, others)) return;
             line.push_back(next);
+            own.add(next);
         }
     }
 
-    /// Whether a point comes near to parts of its own line that are not its neighbours along it.
-    static bool meets_itself(const Polyline& line, const Vec2& next, double room) {
-        const auto neighbours = static_cast<std::size_t>(2.0 * room / trace_step) + 1;
-        for (std::size_t i = 0; i + neighbours < line.size(); ++i)
-            if ((line[i] - next).squaredNorm() < room * room) return true;
-        return false;
-    }
+    bool too_close(const Vec2& p, double room) const { return points_.any_within(p, room, points_.count()); }
 
     void add_seeds(const Polyline& line, std::deque<Vec2>& seeds) const {
         for (std::size_t i = 1; i < line.size(); ++i) {
@@ -168,7 +165,8 @@ class StripTracer {
     }
 
     StripField field_;
-    PointCells points_;
+    double reach_;       // the largest distance asked for
+    PointCells points_;  // of all lines so far
 };
 
 /// Pieces of a line: every second line begins with half a strip. Points are `trace_step` apart.

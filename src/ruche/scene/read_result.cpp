@@ -47,7 +47,7 @@ Result read_result(const std::string& folder) {
                          "The drawing or the program has changed since. Run the scene again.");
     result.equilibrium.x = state.x;
     result.equilibrium.energy = model.energy_terms(state.x);
-    for (int v = 0; v < model.vertex_count(); ++v) result.shape.emplace_back(state.x.segment<3>(3 * v));
+    result.shape = vertex_vectors(state.x, model.vertex_count());
     result.energy_density = model.energy_density(state.x);
     result.self_intersections = find_self_intersections(result.shape, result.layout.mesh.triangles);
     return result;

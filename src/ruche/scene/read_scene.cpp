@@ -88,7 +88,7 @@ static bool gives_every_value(const Node* material) {
 /// A scene that gives every value itself (the record of an earlier run) does not need its card file.
 static void take_card(Scene& scene, const Node* material) {
     const std::string& card = scene.fabric.card;
-    const bool is_file = card.ends_with(".toml") || card.find('/') != std::string::npos;
+    const bool is_file = is_card_path(card);
     const std::string path = is_file ? resolved_path(scene, card) : card;
     std::error_code ignored;
     if (is_file && gives_every_value(material) && !std::filesystem::exists(path, ignored)) return;

@@ -51,13 +51,6 @@ double prestretch_at(double share, double full) {
     return 1.0 / std::sqrt(1.0 - share * (1.0 - 1.0 / (full * full)));
 }
 
-std::vector<Vec3> positions(const Eigen::VectorXd& x, int vertices) {
-    std::vector<Vec3> list;
-    list.reserve(static_cast<std::size_t>(vertices));
-    for (int v = 0; v < vertices; ++v) list.emplace_back(x.segment<3>(3 * v));
-    return list;
-}
-
 void turn_onto(std::vector<Vec3>& shape, const std::vector<Vec3>& next) {
     const RigidAlignment motion = align(shape, next);
     for (Vec3& p : shape) p = motion.rotation * p + motion.translation;
@@ -87,7 +80,7 @@ ReleaseFilm follow(const Result& result, PrintMesh layout, const Control& contro
     ModelInput input = scene_model(scene, layout);
     const Control quiet{.stop = control.stop, .deadline = control.deadline};
     Eigen::VectorXd x = released(result, Model(input), quiet);
-    std::vector<Vec3> next = positions(x, vertices);
+    std::vector<Vec3> next = vertex_vectors(x, vertices);
     ReleaseFilm film{.layout = std::move(layout)};
     const auto keep = [&](double share, std::vector<Vec3> shape) {
         if (free) turn_onto(shape, next);
@@ -102,7 +95,7 @@ ReleaseFilm follow(const Result& result, PrintMesh layout, const Control& contro
         const Equilibrium frame = solve(Model(input), options, quiet, &x);
         if (!found(frame, options)) continue;
         x = frame.x;
-        keep(share, positions(x, vertices));
+        keep(share, vertex_vectors(x, vertices));
     }
     std::vector<Vec3> flat;
     flat.reserve(film.layout.mesh.vertices.size());

@@ -46,6 +46,9 @@ struct Result {
     std::map<std::string, double> seconds;  ///< by phase: read, mesh, release, ...
 };
 
+/// What a vector of all unknowns holds for the vertices: positions, or their changes.
+std::vector<Vec3> vertex_vectors(const Eigen::VectorXd& unknowns, int vertex_count);
+
 /// Per triangle: 1 where the sheet passes through itself.
 std::vector<char> passes_through_itself(const Result& result);
 

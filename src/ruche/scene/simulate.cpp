@@ -93,9 +93,7 @@ void take(Result& result, Release released, Stopwatch& watch) {
     result.warnings.insert(result.warnings.end(), released.warnings.begin(), released.warnings.end());
     result.seconds["release"] = watch.lap();
     const TriangleMesh& mesh = result.layout.mesh;
-    result.shape.reserve(mesh.vertices.size());
-    for (int v = 0; v < mesh.vertex_count(); ++v)
-        result.shape.emplace_back(result.equilibrium.x.segment<3>(3 * v));
+    result.shape = vertex_vectors(result.equilibrium.x, mesh.vertex_count());
     result.energy_density = released.model.energy_density(result.equilibrium.x);
     result.self_intersections = find_self_intersections(result.shape, mesh.triangles);
     result.equilibrium.health.self_intersections = static_cast<int>(result.self_intersections.size());
@@ -138,6 +136,13 @@ Control limited(Control control, const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<Vec3> vertex_vectors(const Eigen::VectorXd& unknowns, int vertex_count) {
+    std::vector<Vec3> vectors;
+    vectors.reserve(static_cast<std::size_t>(vertex_count));
+    for (int v = 0; v < vertex_count; ++v) vectors.emplace_back(unknowns.segment<3>(3 * v));
+    return vectors;
+}
 
 std::vector<char> passes_through_itself(const Result& result) {
     std::vector<char> marks(result.layout.mesh.triangles.size(), 0);

@@ -37,7 +37,7 @@ static PatternSource moved(const Scene& scene, const std::string& folder) {
 
 static FabricOptions moved_fabric(const Scene& scene, const std::string& folder) {
     FabricOptions fabric = scene.fabric;
-    if (!fabric.card.ends_with(".toml") && fabric.card.find('/') == std::string::npos) return fabric;
+    if (!is_card_path(fabric.card)) return fabric;
     std::error_code failed;
     const std::filesystem::path path =
         std::filesystem::proximate(resolved_path(scene, fabric.card), folder.empty() ? "." : folder, failed);

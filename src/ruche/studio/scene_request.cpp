@@ -18,7 +18,7 @@ bool names_file(const std::string& key, const std::string& text) {
     constexpr std::array paths = {"pattern.svg", "pattern.mesh", "pattern.thickness_table",
                                   "pattern.options.file"};
     if (text.empty()) return false;
-    if (key == "fabric.card") return text.ends_with(".toml") || text.find('/') != std::string::npos;
+    if (key == "fabric.card") return is_card_path(text);
     return std::find(paths.begin(), paths.end(), key) != paths.end();
 }
 

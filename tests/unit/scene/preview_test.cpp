@@ -16,7 +16,7 @@ int preview_triangles(const Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("preview: thin strips take a third of the elements, wide ones what was asked for") {
+TEST_CASE("preview: the thinner the strips the fewer of their elements, wide ones take what was asked for") {
     const auto strips = [](double width) {
         return parse_scene(fmt::format("pattern.generator = \"staggered\"\n"
                                        "pattern.options = {{ width_mm = {} }}\n",

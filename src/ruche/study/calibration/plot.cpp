@@ -93,12 +93,19 @@ std::string series_svg(const PlotSeries& series, const Axis& x, const Axis& y) {
                        series.colour, series.size, series.dashed ? " stroke-dasharray=\"5 3\"" : "", points);
 }
 
+/// Beside the axes, where it covers no curve; 0 without labels.
+double legend_width(const Plot& plot) {
+    std::size_t longest = 0;
+    for (const PlotSeries& series : plot.series) longest = std::max(longest, series.label.size());
+    return longest == 0 ? 0.0 : 30.0 + 6.0 * static_cast<double>(longest);  // of letters of 11 px
+}
+
 std::string legend_svg(const Plot& plot) {
     std::string text;
     double y = top + 14.0;
     for (const PlotSeries& series : plot.series) {
         if (series.label.empty()) continue;
-        const double x = left + 10.0;
+        const double x = plot.width_px;
         text +=
             series.dots
                 ? fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"3\" fill=\"{}\"/>", x + 9.0, y - 4.0,
@@ -157,7 +164,7 @@ std::string svg_plot(const Plot& plot) {
     std::string svg = fmt::format(
         "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"{2}\">\n"
         "<text class=\"title\" x=\"{3}\" y=\"18\">{2}</text>\n",
-        plot.width_px, plot.height_px, html_escaped(plot.title), left);
+        plot.width_px + legend_width(plot), plot.height_px, html_escaped(plot.title), left);
     for (const double tick : x.ticks())
         svg += fmt::format(
             "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"

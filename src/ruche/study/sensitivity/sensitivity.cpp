@@ -25,7 +25,7 @@ Model model_at_rest(const Result& result) {
 /// The scene's card; none where its file is gone (a record of an earlier run does not need it).
 std::optional<MaterialCard> card_of_scene(const Scene& scene) {
     const std::string& card = scene.fabric.card;
-    const bool is_file = card.ends_with(".toml") || card.find('/') != std::string::npos;
+    const bool is_file = is_card_path(card);
     const std::string path = is_file ? resolved_path(scene, card) : card;
     std::error_code ignored;
     if (is_file && !std::filesystem::exists(path, ignored)) return std::nullopt;
@@ -52,13 +52,6 @@ std::optional<double> card_uncertainty(const MaterialCard& card, const Scene& sc
         return relative_half(nearest->values.at(std::string(bare_name(info(field)))));
     }
     return std::nullopt;
-}
-
-std::vector<Vec3> vertex_rows(const Eigen::VectorXd& x, int vertex_count) {
-    std::vector<Vec3> rows;
-    rows.reserve(static_cast<std::size_t>(vertex_count));
-    for (int v = 0; v < vertex_count; ++v) rows.emplace_back(x.segment<3>(3 * v));
-    return rows;
 }
 
 }  // namespace
@@ -105,7 +98,7 @@ std::optional<Sensitivities> sensitivities(const Result& result, const Control& 
     found.slopes.resize(static_cast<Eigen::Index>(found.measures.size()), count);
     for (Eigen::Index p = 0; p < count; ++p) {
         const std::vector<double> rates =
-            measures.rates(vertex_rows(velocities.col(p), model.vertex_count()));
+            measures.rates(vertex_vectors(velocities.col(p), model.vertex_count()));
         for (std::size_t m = 0; m < rates.size(); ++m)
             found.slopes(static_cast<Eigen::Index>(m), p) = rates[m] / found.measures[m].value;
     }

@@ -46,7 +46,8 @@ ShapeMeasures::ShapeMeasures(const PrintMesh& layout, std::span<const Vec3> shap
         stretch += strip_weights_[i] * strips[i].stretch;
     }
     measure_extents();
-    if (printed > 0.0) {
+    has_strips_ = printed > 0.0;
+    if (has_strips_) {
         values_.push_back({"mean_curvature", "1/mm", curvature});
         values_.push_back({"mean_stretch", "", stretch});
     }
@@ -134,7 +135,7 @@ std::vector<double> ShapeMeasures::rates(std::span<const Vec3> velocities) const
         curvature += sign * strip_weights_[i] * strips[i].curvature;
         stretch += strip_weights_[i] * strips[i].stretch;
     }
-    if (values_.front().name == "mean_curvature") rates = {curvature, stretch};
+    if (has_strips_) rates = {curvature, stretch};
     rates.insert(rates.end(), {area_rate(velocities), extents[0], extents[1], extents[2]});
     for (std::size_t i = 0; i < strips.size(); ++i) {
         if (strip_weights_[i] > 0.0) rates.push_back(strips[i].curvature);

@@ -21,13 +21,11 @@ struct ShapeMeasure {
 /// Numbers that describe a released shape, and their exact derivatives when its vertices move. They do not
 /// depend on rigid motions.
 ///
-/// | name | what |
-/// |---|---|
-/// | `mean_curvature` | mean magnitude of the strips' curvature, by printed length, 1/mm |
-/// | `mean_stretch` | of the strips, released over printed length, by printed length |
-/// | `area` | of the released sheet, mm^2 |
-/// | `length`, `width`, `height` | extent along the principal axes of the sheet's vertices (by layout area),
-/// mm | | `curvature.ID` | of a strip, 1/mm, signed as in the report |
+/// - mean_curvature: mean magnitude of the strips' curvature, by printed length, 1/mm
+/// - mean_stretch: of the strips, released over printed length, by printed length
+/// - area: of the released sheet, mm^2
+/// - length, width, height: extents along the principal axes of the vertices (by layout area), mm
+/// - curvature.ID: of a strip, 1/mm, signed as in the report
 class ShapeMeasures {
   public:
     /// What it is given must outlive it.
@@ -59,8 +57,8 @@ class ShapeMeasures {
     std::vector<double> weights_;  ///< of the vertices; their sum is 1
     Vec3 mean_ = Vec3::Zero();
     std::array<Extent, 3> extents_;
-    std::vector<double>
-        strip_weights_;  ///< share of the printed length; 0 for a strip that cannot be measured
+    bool has_strips_ = false;            // that can be measured
+    std::vector<double> strip_weights_;  // share of the printed length; 0 for a strip that cannot be measured
     std::vector<double> strip_curvatures_;
 };
 

@@ -27,10 +27,6 @@ Interval quotient(const Interval& a, const Interval& b) {
     return {low, high};
 }
 
-std::string estimate_text(const Estimate& e) {
-    return fmt::format("{:.5g} ± {:.2g}", e.value, e.uncertainty);
-}
-
 /// Collects what is found at the values of a sweep.
 class Verdict {
   public:
@@ -93,14 +89,14 @@ class Judge {
         const Interval ib = interval_of(b, check_.absolute);
         const bool follows = check_.kind == CheckKind::falls ? ib.high < ia.low : ib.low > ia.high;
         verdict_.add(follows && a.certain && b.certain,
-                     fmt::format("{}: {}, then {}", at(i), estimate_text(a), estimate_text(b)));
+                     fmt::format("{}: {}, then {}", at(i), to_text(a), to_text(b)));
     }
 
     void single(std::size_t i) {
         const Estimate& e = series_.y[i];
         const Interval v = interval_of(e, check_.absolute);
         const auto say = [&](bool holds, const std::string& more) {
-            verdict_.add(holds && e.certain, fmt::format("{}: {}{}{}", at(i), estimate_text(e), more,
+            verdict_.add(holds && e.certain, fmt::format("{}: {}{}{}", at(i), to_text(e), more,
                                                          e.certain ? "" : " (no certified equilibrium)"));
         };
         switch (check_.kind) {
@@ -137,8 +133,7 @@ class Judge {
         const bool certain = series_.y[i].certain && other.certain;
         if (check_.kind == CheckKind::exceeds) {
             verdict_.add(v.low > o.high && certain,
-                         fmt::format("{}: {}, the other {}", at(i), estimate_text(series_.y[i]),
-                                     estimate_text(other)));
+                         fmt::format("{}: {}, the other {}", at(i), to_text(series_.y[i]), to_text(other)));
             return;
         }
         const Interval q = quotient(v, o);

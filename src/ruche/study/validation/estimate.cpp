@@ -1,5 +1,7 @@
 #include "ruche/study/validation/estimate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -32,5 +34,7 @@ Estimate estimate(std::span<const double> values, double refinement) {
     }
     return result;
 }
+
+std::string to_text(const Estimate& e) { return fmt::format("{:.5g} ± {:.2g}", e.value, e.uncertainty); }
 
 }  // namespace ruche

@@ -25,4 +25,7 @@ struct Estimate {
 /// size): then U is F times the largest difference between two of the last three values.
 Estimate estimate(std::span<const double> values, double refinement);
 
+/// "0.1201 ± 0.0013".
+std::string to_text(const Estimate& e);
+
 }  // namespace ruche

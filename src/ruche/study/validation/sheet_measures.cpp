@@ -7,17 +7,13 @@
 #include <set>
 
 #include "ruche/geometry/circle_fit.hpp"
+#include "ruche/geometry/layout_frame.hpp"
 #include "ruche/geometry/strain_measures.hpp"
 
 namespace ruche {
 namespace {
 
 using Edges32 = Eigen::Matrix<double, 3, 2>;
-
-Vec2 layout_centre(const TriangleMesh& mesh, int t) {
-    const auto& [a, b, c] = mesh.triangles[static_cast<std::size_t>(t)];
-    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
-}
 
 /// dx/dX of a triangle.
 Edges32 deformation(const TriangleMesh& mesh, std::span<const Vec3> shape, int t) {
@@ -45,7 +41,7 @@ double transverse_stretch(const PrintMesh& layout, std::span<const Vec3> shape, 
     double sum = 0.0;
     double area = 0.0;
     for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
-        const Vec2 centre = layout_centre(layout.mesh, t);
+        const Vec2 centre = layout_centroid(layout.mesh, t);
         if (!ring.holds(centre)) continue;
         const Vec2 out = centre - ring.middle;
         const Vec2 around = Vec2(-out.y(), out.x()).normalized();
@@ -62,7 +58,7 @@ IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<cons
     double area = 0.0;
     for (int t = 0; t < mesh.triangle_count(); ++t) {
         const Triangle& corners = mesh.triangles[static_cast<std::size_t>(t)];
-        if (ring.holds(layout_centre(mesh, t))) area += released_area(corners, shape);
+        if (ring.holds(layout_centroid(mesh, t))) area += released_area(corners, shape);
         for (int i = 0; i < 3; ++i)
             defect[corners[i]] -=
                 angle_at(shape[corners[i]], shape[corners[(i + 1) % 3]], shape[corners[(i + 2) % 3]]);

@@ -11,9 +11,13 @@
 namespace ruche {
 namespace {
 
-std::string table_value(const Estimate& e) {
-    return fmt::format("{:.5g} ± {:.2g}{}", e.value, e.uncertainty, e.certain ? "" : " (!)");
-}
+constexpr std::string_view how_to_read =
+    R"(Values are those on the finest mesh, ± what discretisation may still change (grid convergence index); a
+check holds when it does for everything in that range and all runs are certified equilibria. Error bars are what a
+print thicker or thinner by the experiment's spread would give. Measured points stand only in the paper's pictures
+and are not drawn.)";
+
+std::string table_value(const Estimate& e) { return to_text(e) + (e.certain ? "" : " (!)"); }
 
 std::string verdict_cell(bool holds) {
     return holds ? "<td class=\"good\">holds</td>" : "<td class=\"bad\">does not hold</td>";
@@ -198,16 +202,11 @@ std::string validation_page(const Validation& v) {
         runs += o.runs.size();
         for (const RunOutcome& r : o.outcomes) work += r.seconds;
     }
-    std::string html = html_paragraph(fmt::format(
-        "{}{} runs, {:.0f} s of computing in all, {} at a time; this time {} of them in {:.0f} s. Values are "
-        "those "
-        "on the finest mesh, ± what discretisation may still change (grid convergence index); a check holds "
-        "when it "
-        "does for everything in that range and all runs are certified equilibria. Error bars are what a "
-        "print "
-        "thicker or thinner by the experiment's spread would give. Measured points stand only in the paper's "
-        "pictures and are not drawn.",
-        v.quick ? "Quick subset: " : "", runs, work, v.jobs, v.computed, v.seconds));
+    std::string html = html_paragraph(
+        fmt::format(
+            "{}{} runs, {:.0f} s of computing in all, {} at a time; this time {} of them in {:.0f} s. ",
+            v.quick ? "Quick subset: " : "", runs, work, v.jobs, v.computed, v.seconds) +
+        std::string(how_to_read));
     html += overview(v) + choices(v);
     for (const ExperimentOutcome& o : v.experiments) html += experiment_section(o);
     return html_page("Ruche against the paper's experiments", html);
