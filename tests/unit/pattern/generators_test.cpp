@@ -3,15 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "ruche/core/error.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 #include "ruche/pattern/tiling.hpp"
+#include "text_file.hpp"
 
 using namespace ruche;
+using ruche::test::TextFile;
 
 namespace {
 
@@ -27,25 +27,6 @@ std::string problem_of(std::string_view name, const std::map<std::string, std::s
 }
 
 bool contains_text(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
-
-/// A text file in the temporary folder that goes away with the test.
-class TextFile {
-  public:
-    explicit TextFile(const std::string& text) {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() /
-                ("ruche-curves-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
-                 std::to_string(++count) + ".csv");
-        std::ofstream(path_, std::ios::binary) << text;
-    }
-    ~TextFile() { std::filesystem::remove(path_); }
-    TextFile(const TextFile&) = delete;
-    TextFile& operator=(const TextFile&) = delete;
-    std::string path() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 }  // namespace
 
