@@ -141,7 +141,7 @@ TEST_CASE("scene_mesh: a mesh that no machine could solve is refused at once") {
 TEST_CASE("scene_pattern: strips that end up on the back are thicker by the factor, whoever put them there") {
     const auto thicknesses = [](const std::string& plastic) {
         const Scene scene = parse_scene(
-            "[pattern]\ngenerator = \"staggered\"\n[pattern.options]\nrows = 2\nstrips_per_row = 1\n"
+            "[pattern]\ngenerator = \"staggered\"\n[pattern.options]\nrows = 2\nstrips_per_row = 2\n"
             "half_strips = false\nalternate_sides = true\n[plastic]\nthickness_mm = 0.8\n" +
                 plastic,
             "k.toml");

@@ -265,8 +265,6 @@ TEST_CASE("shape measures: the stretch around the middle is that of the shape, w
 TEST_CASE("shape measures: the silhouette of a roll is its circle, without what flares at its ends") {
     PrintMesh layout = sheet(30.0, 5.0, 5);
     for (Print& print : layout.print) print.front = 0.6;
-    layout.strips.push_back(
-        {.id = "a", .centreline = {points_on_mesh(layout.mesh, {{0, 2.5}, {30, 2.5}}, 61)}});
     const auto rolled = [&](double straight_from) {
         return placed(layout, [&](const Vec2& p) {
             const double round = std::min(p.x(), straight_from) / 7.0;

@@ -49,10 +49,13 @@ Eigen::AlignedBox2d strip_box(const PrintMesh& layout, const MeshedStrip& strip)
     return box;
 }
 
-/// Around all centre lines.
+/// Around all that is printed.
 Eigen::AlignedBox2d print_box(const PrintMesh& layout) {
     Eigen::AlignedBox2d box;
-    for (const MeshedStrip& strip : layout.strips) box.extend(strip_box(layout, strip));
+    for (int t = 0; t < layout.mesh.triangle_count(); ++t)
+        if (!layout.print[static_cast<std::size_t>(t)].bare())
+            for (const int v : layout.mesh.triangles[static_cast<std::size_t>(t)])
+                box.extend(layout.mesh.vertices[static_cast<std::size_t>(v)]);
     return box;
 }
 
@@ -133,13 +136,17 @@ double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape
 }
 
 std::vector<int> chosen_strips(const PrintMesh& layout, const std::string& begin, double share) {
-    const Eigen::AlignedBox2d inside = middle_of(print_box(layout), share);
-    std::vector<int> chosen;
-    for (std::size_t s = 0; s < layout.strips.size(); ++s) {
-        const Eigen::AlignedBox2d box = strip_box(layout, layout.strips[s]);
-        if (layout.strips[s].id.starts_with(begin) && !box.isEmpty() && inside.contains(box))
-            chosen.push_back(static_cast<int>(s));
+    std::vector<Eigen::AlignedBox2d> boxes;
+    Eigen::AlignedBox2d all;
+    for (const MeshedStrip& strip : layout.strips) {
+        boxes.push_back(strip_box(layout, strip));
+        all.extend(boxes.back());
     }
+    const Eigen::AlignedBox2d inside = middle_of(all, share);
+    std::vector<int> chosen;
+    for (std::size_t s = 0; s < boxes.size(); ++s)
+        if (layout.strips[s].id.starts_with(begin) && !boxes[s].isEmpty() && inside.contains(boxes[s]))
+            chosen.push_back(static_cast<int>(s));
     return chosen;
 }
 

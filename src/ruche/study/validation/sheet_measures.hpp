@@ -35,7 +35,7 @@ IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<cons
 
 /// Curvature of the circle through the printed vertices as one looks along the layout's y direction, that of
 /// the released sheet in the mean: the silhouette of a roll seen from its front. Only of what lies inside the
-/// middle `share` of the box around all centre lines; 1 counts all. Of the surface where plastic and fabric
+/// middle `share` of the box around the print; 1 counts all. Of the surface where plastic and fabric
 /// meet, as everything here: the outside of the plastic has a larger radius. Not negative; NaN when there is
 /// no circle.
 double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share);
