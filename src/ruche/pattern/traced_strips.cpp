@@ -126,13 +126,15 @@ class StripTracer {
         : field_(options), reach_(field_.largest_spacing()), points_(reach_) {}
 
     std::vector<Polyline> lines(const Vec2& first_seed) {
-        std::deque<Vec2> seeds = {first_seed};
+        std::deque<Seed> seeds = {{first_seed, field_.spacing(first_seed)}};
         std::vector<Polyline> traced;
         while (!seeds.empty()) {
-            const Vec2 seed = seeds.front();
+            const auto [seed, beside] = seeds.front();
             seeds.pop_front();
-            // A hair less, so that a seed exactly beside a line is not too close to it.
-            if (!field_.holds(seed) || too_close(seed, 0.98 * field_.spacing(seed))) continue;
+            // A hair less, so that a seed exactly beside a line is not too close to it; and no more than
+            // where it was put, so that lines go on to where the spacing is larger.
+            if (!field_.holds(seed) || too_close(seed, 0.98 * std::min(beside, field_.spacing(seed))))
+                continue;
             Polyline line = trace(seed);
             for (const Vec2& p : line) points_.add(p);
             if (points_.count() > most_traced_points)
@@ -145,6 +147,12 @@ class StripTracer {
     }
 
   private:
+    /// Where a line may begin, and how far beside another one that is.
+    struct Seed {
+        Vec2 at;
+        double beside;
+    };
+
     Polyline trace(const Vec2& seed) const {
         Polyline line = {seed};
         const Vec2 along = field_.direction(seed, Vec2(1.0, 0.3));
@@ -172,12 +180,13 @@ class StripTracer {
 
     bool too_close(const Vec2& p, double room) const { return points_.any_within(p, room, points_.count()); }
 
-    void add_seeds(const Polyline& line, std::deque<Vec2>& seeds) const {
+    void add_seeds(const Polyline& line, std::deque<Seed>& seeds) const {
         for (std::size_t i = 1; i < line.size(); ++i) {
             const Vec2 along = (line[i] - line[i - 1]).normalized();
-            const Vec2 across = field_.spacing(line[i]) * Vec2(-along.y(), along.x());
-            seeds.emplace_back(line[i] + across);
-            seeds.emplace_back(line[i] - across);
+            const double beside = field_.spacing(line[i]);
+            const Vec2 across = beside * Vec2(-along.y(), along.x());
+            seeds.push_back({line[i] + across, beside});
+            seeds.push_back({line[i] - across, beside});
         }
     }
 

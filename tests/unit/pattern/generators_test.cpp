@@ -314,6 +314,28 @@ TEST_CASE("traced generator: strips are cut to their length, and printed on the 
     CHECK(on_the_back < static_cast<int>(pattern.strips.size()) / 2);
 }
 
+TEST_CASE("traced generator: lines go on to where their distance grows") {
+    const GeneratedPattern pattern = generate_traced({.field = DirectionField::parallel,
+                                                      .inner = 0,
+                                                      .outer = 20,
+                                                      .spacing = 2,
+                                                      .outer_spacing = 4,
+                                                      .length = 0});
+    // Wherever there is room for a line there is one: nothing is farther from all lines than the largest
+    // spacing.
+    for (int i = -17; i <= 17; ++i)
+        for (int j = -17; j <= 17; ++j) {
+            const Vec2 p(i, j);
+            if (p.norm() > 17.0) continue;
+            double nearest = 1e9;
+            for (const DrawnStrip& strip : pattern.strips)
+                for (const Vec2& q : line_of(strip)) nearest = std::min(nearest, (p - q).norm());
+            CAPTURE(i);
+            CAPTURE(j);
+            CHECK(nearest < 4.0);
+        }
+}
+
 TEST_CASE("traced generator: contradictions are named") {
     CHECK(contains_text(problem_of("traced", {{"spacing_mm", "1.2"}}), "leave no room"));
     CHECK(contains_text(problem_of("traced", {{"inner_mm", "0"}}), "no direction in its middle"));
