@@ -56,7 +56,9 @@ std::string traced_problem(std::map<std::string, std::string> options) {
     return "";
 }
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+bool mentions(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
 
 }  // namespace
 
@@ -93,17 +95,18 @@ TEST_CASE("direction grid: rows in any order, columns by the header, separators 
 TEST_CASE("direction grid: what is no grid, or none of numbers, is an error with its line") {
     const std::string good = "-1,-1,0,2\n1,-1,0,2\n-1,1,0,2\n1,1,0,2\n";
     CHECK(grid_problem(good).empty());
-    CHECK(says(grid_problem(""), "no nodes"));
-    CHECK(says(grid_problem("# nothing\n"), "no nodes"));
-    CHECK(says(grid_problem("0,0,0,2\n1,0,0\n"), "2 : 3 columns, expected 4"));
-    CHECK(says(grid_problem("0,0,0,2\n1,0,nan,2\n"), "2 angle_deg: \"nan\" is not a finite number"));
-    CHECK(says(grid_problem("0,0,0,2\n1,0,0,inf\n"), "2 spacing_mm: \"inf\""));
-    CHECK(says(grid_problem("0,0,0,2\n1,0,,2\n"), "2 angle_deg: \"\""));
-    CHECK(says(grid_problem("0,0,0,2\n1,0,0,0\n"), "2 spacing_mm: 0 is outside"));
-    CHECK(says(grid_problem("x,y,angle,spacing\n" + good), "1 : the header has no column \"x_mm\""));
-    CHECK(says(grid_problem(good + "x_mm,y_mm,angle_deg,spacing_mm\n"), "5 x_mm: \"x_mm\""));
-    CHECK(says(grid_problem("0,0,0,2\n0,1,0,2\n"), "a grid of 1 x 2 nodes"));
-    CHECK(says(grid_problem(good + "1,-1,5,2\n"), "5 : the node x = 1, y = -1 mm stands in line 2 already"));
+    CHECK(mentions(grid_problem(""), "no nodes"));
+    CHECK(mentions(grid_problem("# nothing\n"), "no nodes"));
+    CHECK(mentions(grid_problem("0,0,0,2\n1,0,0\n"), "2 : 3 columns, expected 4"));
+    CHECK(mentions(grid_problem("0,0,0,2\n1,0,nan,2\n"), "2 angle_deg: \"nan\" is not a finite number"));
+    CHECK(mentions(grid_problem("0,0,0,2\n1,0,0,inf\n"), "2 spacing_mm: \"inf\""));
+    CHECK(mentions(grid_problem("0,0,0,2\n1,0,,2\n"), "2 angle_deg: \"\""));
+    CHECK(mentions(grid_problem("0,0,0,2\n1,0,0,0\n"), "2 spacing_mm: 0 is outside"));
+    CHECK(mentions(grid_problem("x,y,angle,spacing\n" + good), "1 : the header has no column \"x_mm\""));
+    CHECK(mentions(grid_problem(good + "x_mm,y_mm,angle_deg,spacing_mm\n"), "5 x_mm: \"x_mm\""));
+    CHECK(mentions(grid_problem("0,0,0,2\n0,1,0,2\n"), "a grid of 1 x 2 nodes"));
+    CHECK(mentions(grid_problem(good + "1,-1,5,2\n"),
+                   "5 : the node x = 1, y = -1 mm stands in line 2 already"));
 }
 
 TEST_CASE("direction grid: a missing node is named, and the row whose coordinate slipped") {
@@ -113,20 +116,20 @@ TEST_CASE("direction grid: a missing node is named, and the row whose coordinate
     };
     CHECK(grid_problem(nine("0,0,0,2\n")).empty());
     // Nobody is to blame for a row that is not there.
-    CHECK(says(grid_problem(nine("")),
-               "0 : there is no node at x = 0, y = 0 mm: 8 rows with 3 different x and 3"));
-    CHECK(says(grid_problem(nine("0.05,0,0,2\n")), "5 : there is no node at x = 0.05, y = -1"));
-    CHECK(says(grid_problem(nine("0,0.05,0,2\n")), "5 : there is no node at x = 0, y = 0"));
+    CHECK(mentions(grid_problem(nine("")),
+                   "0 : there is no node at x = 0, y = 0 mm: 8 rows with 3 different x and 3"));
+    CHECK(mentions(grid_problem(nine("0.05,0,0,2\n")), "5 : there is no node at x = 0.05, y = -1"));
+    CHECK(mentions(grid_problem(nine("0,0.05,0,2\n")), "5 : there is no node at x = 0, y = 0"));
     // As many places as pairs of coordinates would not fit into memory.
     std::string line_of_nodes;
     for (int i = 0; i < 100000; ++i) line_of_nodes += fmt::format("{0},{0},0,2\n", 0.01 * i);
-    CHECK(says(grid_problem(line_of_nodes), "100000 different x and 100000 different y"));
+    CHECK(mentions(grid_problem(line_of_nodes), "100000 different x and 100000 different y"));
 }
 
 TEST_CASE("direction grid: it has to reach over the fabric and leave room between strips") {
-    CHECK(says(grid_problem("-1,-1,0,2\n0.9,-1,0,2\n-1,1,0,2\n0.9,1,0,2\n"), "over x from -1 to 0.9"));
-    CHECK(
-        says(grid_problem("-1,-1,0,2\n1,-1,0,2\n-1,1,0,0.9\n1,1,0,2\n"), "3 spacing_mm: lines 0.9 mm apart"));
+    CHECK(mentions(grid_problem("-1,-1,0,2\n0.9,-1,0,2\n-1,1,0,2\n0.9,1,0,2\n"), "over x from -1 to 0.9"));
+    CHECK(mentions(grid_problem("-1,-1,0,2\n1,-1,0,2\n-1,1,0,0.9\n1,1,0,2\n"),
+                   "3 spacing_mm: lines 0.9 mm apart"));
 }
 
 TEST_CASE("traced generator: a field from a file gives the lines of the field that it was taken from") {
@@ -169,19 +172,20 @@ TEST_CASE("traced generator: spacings from a file, and strips cross the place wh
 
 TEST_CASE("traced generator: what contradicts a field from a file is named") {
     const TextFile file(grid_text(10.0, 1.0, 2.5, [](double, double) { return 0.0; }));
-    CHECK(says(traced_problem({{"field", "file"}}), "pattern.options.file: no file"));
-    CHECK(says(traced_problem({{"file", file.path()}}), "pattern.options.file: is given"));
-    CHECK(says(traced_problem({{"field", "file"}, {"file", "/nowhere/at all.csv"}}),
-               "/nowhere/at all.csv: there is no"));
-    CHECK(says(traced_problem({{"field", "file"}, {"file", file.path()}}), "the fabric 20 mm to all sides"));
+    CHECK(mentions(traced_problem({{"field", "file"}}), "pattern.options.file: no file"));
+    CHECK(mentions(traced_problem({{"file", file.path()}}), "pattern.options.file: is given"));
+    CHECK(mentions(traced_problem({{"field", "file"}, {"file", "/nowhere/at all.csv"}}),
+                   "/nowhere/at all.csv: there is no"));
+    CHECK(mentions(traced_problem({{"field", "file"}, {"file", file.path()}}),
+                   "the fabric 20 mm to all sides"));
     const std::map<std::string, std::string> good = {
         {"field", "file"}, {"file", file.path()}, {"outer_mm", "10"}, {"inner_mm", "0"}};
     CHECK(traced_problem(good).empty());
     auto with_spacing = good;
     with_spacing["spacing_mm"] = "3";
-    CHECK(says(traced_problem(with_spacing),
-               "pattern.options.spacing_mm: means nothing with a field from a file"));
+    CHECK(mentions(traced_problem(with_spacing),
+                   "pattern.options.spacing_mm: means nothing with a field from a file"));
     auto wide = good;
     wide["width_mm"] = "2";
-    CHECK(says(traced_problem(wide), ":2: spacing_mm: lines 2.5 mm apart leave no room"));
+    CHECK(mentions(traced_problem(wide), ":2: spacing_mm: lines 2.5 mm apart leave no room"));
 }
