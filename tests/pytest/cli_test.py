@@ -108,6 +108,26 @@ def test_generated_drawings_can_be_simulated(name, tmp_path):
     assert ruche("pattern", name, cwd=tmp_path).stdout == (tmp_path / "x y.svg").read_text()
 
 
+def test_a_field_from_a_file_is_drawn_and_stands_beside_its_scene(tmp_path):
+    place = tmp_path / "scenes"
+    place.mkdir()
+    nodes = [f"{x},{y},{15 * y},{3 + 0.1 * x}" for x in (-8, 0, 8) for y in (-8, 0, 8)]
+    (place / "field.csv").write_text("\n".join(["x_mm,y_mm,angle_deg,spacing_mm", *nodes]))
+    options = ["--field", "file", "--file", "scenes/field.csv", "--inner-mm", "0", "--outer-mm", "8"]
+    run = ruche("pattern", "traced", *options, "-o", "x.svg", cwd=tmp_path)
+    assert run.returncode == 0, run.stderr
+    assert " strips, " in run.stdout
+    (place / "k.toml").write_text('[pattern]\ngenerator = "traced"\n[pattern.options]\nfield = "file"\n'
+                                  'file = "field.csv"\ninner_mm = 0\nouter_mm = 8\n')
+    count = run.stdout.split(": ")[1].split(" strips")[0]
+    checked = ruche("check", "scenes/k.toml", cwd=tmp_path)
+    assert f"strips     {count}\n" in checked.stdout
+    (place / "field.csv").write_text("\n".join(nodes[:-1]))
+    for broken in (ruche("check", "scenes/k.toml", cwd=tmp_path), ruche("pattern", "traced", *options, cwd=tmp_path)):
+        assert broken.returncode == 2
+        assert "scenes/field.csv: there is no node at x = 8, y = 8 mm" in broken.stderr
+
+
 def test_a_drawing_alone_is_simulated_and_says_what_it_assumed(finished):
     place, run = finished
     assert "assumed:\n  fabric.card = spandex-tpu95a (not given)\n  fabric.prestretch = [1.7, 1.7] (not given)" in run.stdout

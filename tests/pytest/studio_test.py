@@ -176,6 +176,7 @@ def test_no_path_leads_out_of_the_folder(studio, path):
     {"values": {"pattern.svg": "../secret.svg"}}, {"values": {"fabric.card": "../secret.toml"}},
     {"values": {"fabric.card": "/etc/passwd.toml"}}, {"values": {"pattern.mesh": "../x.ply"}},
     {"base": {"generator": "curves"}, "values": {"pattern.options.file": "../secret.toml"}},
+    {"base": {"generator": "traced"}, "values": {"pattern.options.field": "file", "pattern.options.file": "../secret.toml"}},
     {"base": {"generator": "curves"}, "values": {"pattern": {"options": {"file": "../secret.toml"}}}},
     {"base": {"generator": "curves"}, "values": {"pattern.options": {"file": "../secret.toml"}}},
     {"base": {"scene": "outward.toml"}}, {"values": {"pattern": '{svg = "../secret.svg"}'}},

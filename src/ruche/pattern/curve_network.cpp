@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,6 +8,7 @@
 #include "ruche/core/error.hpp"
 #include "ruche/core/text_scan.hpp"
 #include "ruche/pattern/generators.hpp"
+#include "ruche/pattern/table_cells.hpp"
 
 namespace ruche {
 namespace {
@@ -19,34 +18,6 @@ constexpr double closest_points = 1e-6;  // mm; nearer points are one
 
 constexpr const char* advice =
     "One point \"x, y\" in mm per line, an empty line between curves; or three columns \"curve, x, y\".";
-
-/// The cells of one line, cut at commas, semicolons, tabs or blanks.
-std::vector<std::string_view> cells_of(std::string_view line) {
-    line = line.substr(0, line.find('#'));
-    const bool separated = line.find_first_of(",;\t") != std::string_view::npos;
-    const std::string_view separators = separated ? ",;\t" : " ";
-    std::vector<std::string_view> cells;
-    const auto add = [&](std::string_view cell) {
-        const auto begin = cell.find_first_not_of(" \r\"");
-        const auto end = cell.find_last_not_of(" \r\"");
-        if (begin != std::string_view::npos)
-            cells.push_back(cell.substr(begin, end - begin + 1));
-        else if (separated)
-            cells.emplace_back();
-    };
-    while (true) {
-        const auto at = line.find_first_of(separators);
-        add(line.substr(0, at));
-        if (at == std::string_view::npos) break;
-        line.remove_prefix(at + 1);
-    }
-    if (cells.size() == 1 && cells.front().empty()) cells.clear();
-    return cells;
-}
-
-bool read_coordinate(std::string_view text, double& number) {
-    return read_number(text, number) && std::isfinite(number);
-}
 
 struct Curve {
     std::string name;
@@ -60,9 +31,7 @@ class CurveReader {
 
     std::vector<Curve> read() {
         const std::string text = read_file(file_, "table of curves", longest_file);
-        std::string_view rest = text;
-        if (rest.starts_with("\xEF\xBB\xBF")) rest.remove_prefix(3);
-        for (TextScan scan(rest); !scan.at_end();) {
+        for (TextScan scan(without_byte_order_mark(text)); !scan.at_end();) {
             const std::string_view line = scan.take_line();
             line_ = scan.line();
             add_line(line);
@@ -73,7 +42,7 @@ class CurveReader {
 
   private:
     void add_line(std::string_view line) {
-        const std::vector<std::string_view> cells = cells_of(line);
+        const std::vector<std::string_view> cells = table_cells(line);
         if (cells.empty()) {
             // A comment does not end a curve, an empty line does.
             if (line.find_first_not_of(" \t\r") == std::string_view::npos) current_ = nullptr;
@@ -84,7 +53,7 @@ class CurveReader {
         const bool named = cells.size() == 3;
         if (cells.size() < 2 || cells.size() > 3)
             fail(fmt::format("{} columns, expected 2 or 3", cells.size()));
-        if (!read_coordinate(cells[named ? 1 : 0], x) || !read_coordinate(cells[named ? 2 : 1], y)) {
+        if (!read_finite(cells[named ? 1 : 0], x) || !read_finite(cells[named ? 2 : 1], y)) {
             if (columns_ == 0 && !header_seen_) {
                 header_seen_ = true;
                 return;

@@ -11,6 +11,9 @@
 
 namespace ruche {
 
+/// The key of the one option of generators that names a file to read.
+inline constexpr const char* generator_file_option = "file";
+
 /// One option of a generator, for help and manual.
 struct GeneratorOption {
     std::string key;      ///< "width_mm"

@@ -79,20 +79,21 @@ struct CurveNetworkOptions {
 };
 GeneratedPattern generate_curves(const CurveNetworkOptions& options);
 
-enum class DirectionField { parallel, radial, circular, hyperbolic };
+enum class DirectionField { parallel, radial, circular, hyperbolic, file };
 
 /// Locally parallel strips that follow a direction field over a disc or an annulus of fabric, at a distance
-/// from each other that varies with the radius (patterns as in Jourdan et al. 2022; the fields are given,
-/// nothing is designed). Lines are traced by evenly spaced streamlines (Jobard and Lefer 1997): new ones
-/// begin beside those that are there wherever there is room, and end where they come too close to another;
-/// then they are cut into strips.
+/// from each other that varies with the radius, or both as a file gives them (patterns as in Jourdan et al.
+/// 2022; the fields are given, nothing is designed). Lines are traced by evenly spaced streamlines (Jobard
+/// and Lefer 1997): new ones begin beside those that are there wherever there is room, and end where they
+/// come too close to another; then they are cut into strips.
 struct TracedStripsOptions {
     DirectionField field = DirectionField::radial;
+    std::string file;   ///< of DirectionField::file: see DirectionGrid
     double turn = 0.0;  ///< degrees, from the field's direction to the strips'; radial and 45: spirals
     double inner = 4.0;
     double outer = 20.0;
     double rim = 0.5;            ///< bare fabric between the print and both borders
-    double spacing = 2.5;        ///< between centre lines of neighbours, at the inner radius
+    double spacing = 2.5;        ///< between centre lines of neighbours, at the inner radius; not with a file
     double outer_spacing = 2.5;  ///< at the outer radius; linear in between
     double width = 1.0;
     double length = 12.0;      ///< of each strip; 0 = lines are not cut

@@ -7,22 +7,31 @@
 #include <optional>
 
 #include "ruche/core/error.hpp"
+#include "ruche/pattern/direction_grid.hpp"
 #include "ruche/pattern/generators.hpp"
 #include "ruche/pattern/tiling.hpp"
 
 namespace ruche {
 namespace {
 
-constexpr std::string_view direction_fields[] = {"parallel", "radial", "circular", "hyperbolic"};
+constexpr std::string_view direction_fields[] = {"parallel", "radial", "circular", "hyperbolic", "file"};
 constexpr double trace_step = 0.25;     // mm
 constexpr double closest_share = 0.75;  // of the spacing: where a line ends
 constexpr double smallest_room = 0.1;   // mm, between strips
 constexpr std::size_t most_traced_points = 400000;
 
+/// Distance of centre lines that leaves room between strips, however close the tracer lets lines come.
+double smallest_spacing(double width) { return (width + smallest_room) / closest_share; }
+
 /// Directions and distances over the layout.
 class StripField {
   public:
-    explicit StripField(const TracedStripsOptions& options) : options_(options) {}
+    explicit StripField(const TracedStripsOptions& options) : options_(options) {
+        if (options.field != DirectionField::file) return;
+        grid_.emplace(options.file);
+        grid_->require_disc(options.outer);
+        grid_->require_spacing(smallest_spacing(options.width), options.width);
+    }
 
     bool holds(const Vec2& p) const {
         const double r = p.norm();
@@ -31,8 +40,13 @@ class StripField {
     }
 
     double spacing(const Vec2& p) const {
+        if (grid_) return grid_->spacing(p);
         const double share = (p.norm() - options_.inner) / (options_.outer - options_.inner);
         return std::lerp(options_.spacing, options_.outer_spacing, std::clamp(share, 0.0, 1.0));
+    }
+
+    double largest_spacing() const {
+        return grid_ ? grid_->largest_spacing() : std::max(options_.spacing, options_.outer_spacing);
     }
 
     /// Unit vector of the line through p, the one of the two that goes on from `before`.
@@ -64,11 +78,14 @@ class StripField {
                 return polar + 0.5 * M_PI;
             case DirectionField::hyperbolic:
                 return -polar;  // along the gradient of x^2 - y^2
+            case DirectionField::file:
+                return grid_->angle(p);
         }
         return 0.0;
     }
 
     const TracedStripsOptions& options_;
+    std::optional<DirectionGrid> grid_;
 };
 
 /// Points in the order in which they came, by cells as large as the largest distance asked for.
@@ -106,16 +123,18 @@ class PointCells {
 class StripTracer {
   public:
     explicit StripTracer(const TracedStripsOptions& options)
-        : field_(options), reach_(std::max(options.spacing, options.outer_spacing)), points_(reach_) {}
+        : field_(options), reach_(field_.largest_spacing()), points_(reach_) {}
 
     std::vector<Polyline> lines(const Vec2& first_seed) {
-        std::deque<Vec2> seeds = {first_seed};
+        std::deque<Seed> seeds = {{first_seed, field_.spacing(first_seed)}};
         std::vector<Polyline> traced;
         while (!seeds.empty()) {
-            const Vec2 seed = seeds.front();
+            const auto [seed, beside] = seeds.front();
             seeds.pop_front();
-            // A hair less, so that a seed exactly beside a line is not too close to it.
-            if (!field_.holds(seed) || too_close(seed, 0.98 * field_.spacing(seed))) continue;
+            // A hair less, so that a seed exactly beside a line is not too close to it; and no more than
+            // where it was put, so that lines go on to where the spacing is larger.
+            if (!field_.holds(seed) || too_close(seed, 0.98 * std::min(beside, field_.spacing(seed))))
+                continue;
             Polyline line = trace(seed);
             for (const Vec2& p : line) points_.add(p);
             if (points_.count() > most_traced_points)
@@ -128,6 +147,12 @@ class StripTracer {
     }
 
   private:
+    /// Where a line may begin, and how far beside another one that is.
+    struct Seed {
+        Vec2 at;
+        double beside;
+    };
+
     Polyline trace(const Vec2& seed) const {
         Polyline line = {seed};
         const Vec2 along = field_.direction(seed, Vec2(1.0, 0.3));
@@ -155,12 +180,13 @@ class StripTracer {
 
     bool too_close(const Vec2& p, double room) const { return points_.any_within(p, room, points_.count()); }
 
-    void add_seeds(const Polyline& line, std::deque<Vec2>& seeds) const {
+    void add_seeds(const Polyline& line, std::deque<Seed>& seeds) const {
         for (std::size_t i = 1; i < line.size(); ++i) {
             const Vec2 along = (line[i] - line[i - 1]).normalized();
-            const Vec2 across = field_.spacing(line[i]) * Vec2(-along.y(), along.x());
-            seeds.emplace_back(line[i] + across);
-            seeds.emplace_back(line[i] - across);
+            const double beside = field_.spacing(line[i]);
+            const Vec2 across = beside * Vec2(-along.y(), along.x());
+            seeds.push_back({line[i] + across, beside});
+            seeds.push_back({line[i] - across, beside});
         }
     }
 
@@ -191,18 +217,34 @@ std::vector<Polyline> cut_into_strips(const Polyline& line, const TracedStripsOp
     return pieces;
 }
 
+/// A file goes with field = "file" and brings its own spacing.
+void check_field_file(const TracedStripsOptions& o) {
+    const bool from_file = o.field == DirectionField::file;
+    if (from_file && o.file.empty())
+        throw InputError({.key = "file"}, "no file of the field is given",
+                         "A node \"x_mm, y_mm, angle_deg, spacing_mm\" per line, on a complete grid.");
+    if (!from_file && !o.file.empty())
+        throw InputError({.key = "file"}, "is given, but the field is none from a file",
+                         "Give field = \"file\".");
+    const TracedStripsOptions initial;
+    if (from_file && (o.spacing != initial.spacing || o.outer_spacing != initial.outer_spacing))
+        throw InputError({.key = o.spacing != initial.spacing ? "spacing_mm" : "outer_spacing_mm"},
+                         "means nothing with a field from a file, which has its own spacing_mm");
+}
+
 void check_traced(const TracedStripsOptions& o) {
     if (o.inner >= o.outer)
         throw InputError({.key = "inner_mm"},
                          fmt::format("{} is not smaller than outer_mm = {}", o.inner, o.outer));
-    if (closest_share * std::min(o.spacing, o.outer_spacing) < o.width + smallest_room)
+    check_field_file(o);
+    if (std::min(o.spacing, o.outer_spacing) < smallest_spacing(o.width) && o.file.empty())
         throw InputError(
             {.key = "spacing_mm"},
             fmt::format("lines {} mm apart, which may come as close as {:g} of that, leave no room "
                         "between strips of {} mm width",
                         std::min(o.spacing, o.outer_spacing), closest_share, o.width),
-            fmt::format("Give a spacing of at least {:.3g} mm.", (o.width + smallest_room) / closest_share));
-    const bool has_centre = o.field != DirectionField::parallel;
+            fmt::format("Give a spacing of at least {:.3g} mm.", smallest_spacing(o.width)));
+    const bool has_centre = o.field != DirectionField::parallel && o.field != DirectionField::file;
     if (has_centre && o.inner < o.width)
         throw InputError({.key = "inner_mm"},
                          fmt::format("{} mm: this field has no direction in its middle", o.inner),
@@ -216,7 +258,10 @@ std::span<const Field<TracedStripsOptions>> fields<TracedStripsOptions>() {
     using S = TracedStripsOptions;
     static const Field<S> table[] = {
         {"field", choice<&S::field>(direction_fields), "", 0, 0,
-         "Directions: parallel to x, radial, circular, or along the gradient of x^2 - y^2."},
+         "Directions: parallel to x, radial, circular, along the gradient of x^2 - y^2, or from a file."},
+        {"file", &S::file, "", -infinity, infinity,
+         "Of field = \"file\": directions and spacing on a grid, \"x_mm, y_mm, angle_deg, spacing_mm\" per "
+         "line, in any order; every x needs every y."},
         {"turn_deg", &S::turn, "deg", -180, 180, "Angle from the field's direction to the strips'."},
         {"inner_mm", &S::inner, "mm", 0, 1e4, "Radius of the hole in the fabric; 0 = none."},
         {"outer_mm", &S::outer, "mm", 1.0, 1e4, "Radius of the fabric."},
@@ -240,8 +285,9 @@ GeneratedPattern generate_traced(const TracedStripsOptions& options) {
     // Away from axes of symmetry nothing is decided by rounding.
     const double radius = 0.5 * (options.inner + options.outer);
     const double angle = 0.1;
-    const Vec2 seed =
-        options.inner == 0.0 ? Vec2(0.0, 0.0) : Vec2(radius * std::cos(angle), radius * std::sin(angle));
+    const Vec2 seed = options.field == DirectionField::parallel && options.inner == 0.0
+                          ? Vec2(0.0, 0.0)
+                          : Vec2(radius * std::cos(angle), radius * std::sin(angle));
     std::size_t number = 0;
     for (const Polyline& line : StripTracer(options).lines(seed)) {
         ++number;

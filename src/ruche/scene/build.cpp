@@ -28,19 +28,17 @@ static Place option_place(const Scene& scene, const std::string& key) {
 }
 
 static GeneratedPattern generated_pattern(const Scene& scene) {
-    std::map<std::string, std::string> options = scene.pattern.generator_options;
-    if (const auto file = options.find("file"); file != options.end())
-        file->second = resolved_path(scene, file->second);
     const Place place{.file = scene.file, .key = "pattern.options"};
     try {
-        return generate(scene.pattern.generator, options, place);
+        return generate(scene.pattern.generator, resolved_generator_options(scene), place);
     } catch (const InputError& error) {
         if (error.place().file != scene.file) throw;  // about a file that the generator reads
         throw InputError(option_place(scene, error.place().key), error.problem(), error.advice());
     }
 }
 
-Pattern scene_pattern(const Scene& scene) {
+/// The pattern as it is drawn, with the thicknesses that are asked for.
+static Pattern drawn_pattern(const Scene& scene) {
     if (!scene.pattern.generator.empty()) return to_pattern(generated_pattern(scene), print_rules(scene));
     const Drawing drawing = read_drawing(
         resolved_path(scene, scene.pattern.svg),
@@ -55,6 +53,13 @@ Pattern scene_pattern(const Scene& scene) {
             advice += "\n  warning: " + drawing.warnings[i];
         throw InputError(error.place(), error.problem(), advice);
     }
+}
+
+Pattern scene_pattern(const Scene& scene) {
+    Pattern pattern = drawn_pattern(scene);
+    for (Strip& strip : pattern.strips)
+        if (strip.side == Side::back) strip.thickness *= scene.plastic.back_thickness_factor;
+    return pattern;
 }
 
 /// Refuses a mesh that no machine could solve before trying to make it.

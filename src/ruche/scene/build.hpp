@@ -10,7 +10,8 @@ namespace ruche {
 /// From the scene to what the solver needs, step by step; each step is data in, data out, and throws
 /// InputError.
 
-/// The printed pattern of a drawing or a generator (not of a mesh file).
+/// The printed pattern of a drawing or a generator (not of a mesh file), as thick as it comes out: strips on
+/// the back by plastic.back_thickness_factor thicker than asked for.
 Pattern scene_pattern(const Scene& scene);
 
 /// How the scene's pattern is to be meshed: rods need edges along the strips.

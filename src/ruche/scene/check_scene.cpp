@@ -37,6 +37,9 @@ static void check_pattern(const Scene& scene) {
     if (!pattern.generator_options.empty())
         only_for(true, "pattern.options." + pattern.generator_options.begin()->first, "generator");
     if (given[0] != "mesh") return;
+    if (scene.plastic.back_thickness_factor != 1.0)
+        throw InputError(place_in(scene, "plastic.back_thickness_factor"),
+                         "means nothing with pattern.mesh, which says for each triangle what is printed");
     if (!scene.plastic.rules.empty())
         throw InputError(place_in(scene, "plastic.rule.1.match"),
                          "means nothing with pattern.mesh, which says for each triangle what is printed");

@@ -5,11 +5,28 @@
 #include <filesystem>
 
 #include "ruche/material/cards.hpp"
+#include "ruche/pattern/generator_registry.hpp"
 
 namespace ruche {
 
 std::string resolved_path(const Scene& scene, const std::string& path) {
     return (std::filesystem::path(scene.file).parent_path() / path).string();
+}
+
+std::map<std::string, std::string> resolved_generator_options(const Scene& scene) {
+    std::map<std::string, std::string> options = scene.pattern.generator_options;
+    const auto file = options.find(generator_file_option);
+    if (file != options.end() && !file->second.empty()) file->second = resolved_path(scene, file->second);
+    return options;
+}
+
+std::vector<std::string> pattern_files(const Scene& scene) {
+    const PatternSource& pattern = scene.pattern;
+    std::vector<std::string> files = {pattern.svg, pattern.mesh, pattern.thickness_table};
+    const auto file = pattern.generator_options.find(generator_file_option);
+    if (file != pattern.generator_options.end()) files.push_back(file->second);
+    std::erase(files, std::string());
+    return files;
 }
 
 std::string scene_name(const Scene& scene) {

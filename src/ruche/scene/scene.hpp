@@ -39,8 +39,9 @@ struct FabricOptions {
 struct PlasticOptions {
     double thickness_mm = 0.6;
     Side side = Side::front;
-    std::vector<PrintRule> rules;  ///< [[plastic.rule]]
-    bool none = false;             ///< nothing is printed: the drawing shows the fabric alone
+    double back_thickness_factor = 1.0;  ///< of strips that end up on the back, over what is asked for
+    std::vector<PrintRule> rules;        ///< [[plastic.rule]]
+    bool none = false;                   ///< nothing is printed: the drawing shows the fabric alone
 };
 
 /// Which vertices of the layout a support or a force takes hold of.
@@ -141,6 +142,12 @@ void for_each_section(SceneType& scene, Visit&& visit) {
 
 /// A path inside the scene, seen from the program's working folder.
 std::string resolved_path(const Scene& scene, const std::string& path);
+
+/// The options of the scene's generator, a file among them seen from the program's working folder.
+std::map<std::string, std::string> resolved_generator_options(const Scene& scene);
+
+/// The files that the scene's pattern is read from, as the scene names them.
+std::vector<std::string> pattern_files(const Scene& scene);
 
 /// Name of the scene: its file's (or drawing's or generator's) without folder and ending; "scene" without.
 std::string scene_name(const Scene& scene);

@@ -53,6 +53,9 @@ std::span<const Field<PlasticOptions>> fields<PlasticOptions>() {
          "Thickness of the print where no rule says otherwise."},
         {"side", choice<&P::side>(sides), "", -infinity, infinity,
          "Side of the fabric that is printed on; the drawing shows the front."},
+        {"back_thickness_factor", &P::back_thickness_factor, "", 0.1, 10,
+         "Thickness of strips on the fabric's back over the thickness that is asked for: a side of other "
+         "roughness may take more or less plastic (paper, Fig. 11). Measure both sides."},
     };
     return table;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "ruche/core/document.hpp"
+#include "ruche/pattern/generator_registry.hpp"
 
 namespace ruche {
 
@@ -21,27 +22,28 @@ static std::string lines(const Struct& s) {
     return text;
 }
 
+/// A path of the scene as it is written in a scene file that lies in `folder`.
+static std::string path_from(const std::string& folder, const Scene& scene, const std::string& path) {
+    std::error_code failed;
+    const std::filesystem::path from_there =
+        std::filesystem::proximate(resolved_path(scene, path), folder.empty() ? "." : folder, failed);
+    return failed ? path : from_there.string();
+}
+
 /// Paths that mean the same file when the scene is kept in another folder.
 static PatternSource moved(const Scene& scene, const std::string& folder) {
     PatternSource pattern = scene.pattern;
-    const std::filesystem::path here = folder.empty() ? "." : folder;
-    for (std::string* path : {&pattern.svg, &pattern.mesh, &pattern.thickness_table}) {
-        if (path->empty()) continue;
-        std::error_code failed;
-        const std::filesystem::path from_here =
-            std::filesystem::proximate(resolved_path(scene, *path), here, failed);
-        if (!failed) *path = from_here.string();
-    }
+    std::vector<std::string*> paths = {&pattern.svg, &pattern.mesh, &pattern.thickness_table};
+    const auto option = pattern.generator_options.find(generator_file_option);
+    if (option != pattern.generator_options.end()) paths.push_back(&option->second);
+    for (std::string* path : paths)
+        if (!path->empty()) *path = path_from(folder, scene, *path);
     return pattern;
 }
 
 static FabricOptions moved_fabric(const Scene& scene, const std::string& folder) {
     FabricOptions fabric = scene.fabric;
-    if (!is_card_path(fabric.card)) return fabric;
-    std::error_code failed;
-    const std::filesystem::path path =
-        std::filesystem::proximate(resolved_path(scene, fabric.card), folder.empty() ? "." : folder, failed);
-    if (!failed) fabric.card = path.string();
+    if (is_card_path(fabric.card)) fabric.card = path_from(folder, scene, fabric.card);
     return fabric;
 }
 
@@ -52,11 +54,11 @@ static std::string material_source_lines(const Scene& scene) {
     return text.empty() ? text : "\n[material.source]\n" + text;
 }
 
-static std::string pattern_option_lines(const PatternSource& pattern) {
+static std::string pattern_lines(const PatternSource& pattern) {
     std::string text;
     for (const auto& [key, value] : pattern.generator_options)
         text += fmt::format("{} = {}\n", toml_quoted(key), toml_quoted(value));
-    return text.empty() ? text : "\n[pattern.options]\n" + text;
+    return lines(pattern) + (text.empty() ? text : "\n[pattern.options]\n" + text);
 }
 
 std::string to_toml(const Scene& scene, const std::string& folder) {
@@ -65,7 +67,7 @@ std::string to_toml(const Scene& scene, const std::string& folder) {
         if (name == "plastic" && scene.plastic.none) return;
         text += fmt::format("{}[{}]\n", text.empty() ? "" : "\n", name);
         if constexpr (std::is_same_v<Section, PatternSource>)
-            text += lines(moved(scene, folder)) + pattern_option_lines(section);
+            text += pattern_lines(moved(scene, folder));
         else if constexpr (std::is_same_v<Section, FabricOptions>)
             text += lines(moved_fabric(scene, folder));
         else if constexpr (std::is_same_v<Section, Material>)

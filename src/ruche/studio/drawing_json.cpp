@@ -80,10 +80,7 @@ Json rules_of(const Scene& scene) {
 }
 
 GeneratedPattern generated(const Scene& scene) {
-    std::map<std::string, std::string> options = scene.pattern.generator_options;
-    if (const auto file = options.find("file"); file != options.end())
-        file->second = resolved_path(scene, file->second);
-    return generate(scene.pattern.generator, options, {.key = "pattern.options"});
+    return generate(scene.pattern.generator, resolved_generator_options(scene), {.key = "pattern.options"});
 }
 
 /// A field's range and kind, for an input.

@@ -59,13 +59,9 @@ std::vector<Override> overrides_of(const Json& request, const Workspace& workspa
 
 /// What a scene file names must lie in the folder, too.
 void check_files(const Scene& scene, const Workspace& workspace) {
-    std::vector<std::string> files = {scene.pattern.svg, scene.pattern.mesh, scene.pattern.thickness_table};
+    std::vector<std::string> files = pattern_files(scene);
     if (names_file("fabric.card", scene.fabric.card)) files.push_back(scene.fabric.card);
-    if (const auto file = scene.pattern.generator_options.find("file");
-        file != scene.pattern.generator_options.end())
-        files.push_back(file->second);
     for (const std::string& file : files) {
-        if (file.empty()) continue;
         std::error_code ignored;
         const std::filesystem::path path = std::filesystem::absolute(resolved_path(scene, file), ignored);
         try {

@@ -14,7 +14,7 @@ border-bottom: 1px solid #e5e5e5; } td.n { text-align: right; font-variant-numer
 .bad { color: #a33c00; } ul.warnings { background: #fff6e5; border-left: 4px solid #e69f00; padding: .6em 2em; }
 svg text { font: 11px system-ui, sans-serif; fill: #333; } svg text.title { font-weight: 600; font-size: 13px; }
 svg .grid { stroke: #e3e3e3; } .plots { display: flex; flex-wrap: wrap; gap: 8px; }
-small { color: #666; } code { font-size: 12px; } details { margin: .6em 0; } .good { color: #1b6e3c; }
+small { color: #666; } code { font-size: 12px; } details { margin: .6em 0; } .good { color: #1b6e3c; } .open { color: #7a5c00; }
 img { max-width: 100%; } table.wide { font-size: 13px; }
 </style>
 )";

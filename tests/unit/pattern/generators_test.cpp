@@ -3,15 +3,15 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <set>
 
 #include "ruche/core/error.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 #include "ruche/pattern/tiling.hpp"
+#include "text_file.hpp"
 
 using namespace ruche;
+using ruche::test::TextFile;
 
 namespace {
 
@@ -27,25 +27,6 @@ std::string problem_of(std::string_view name, const std::map<std::string, std::s
 }
 
 bool contains_text(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
-
-/// A text file in the temporary folder that goes away with the test.
-class TextFile {
-  public:
-    explicit TextFile(const std::string& text) {
-        static int count = 0;
-        path_ = std::filesystem::temp_directory_path() /
-                ("ruche-curves-" + std::to_string(reinterpret_cast<std::uintptr_t>(this)) + "-" +
-                 std::to_string(++count) + ".csv");
-        std::ofstream(path_, std::ios::binary) << text;
-    }
-    ~TextFile() { std::filesystem::remove(path_); }
-    TextFile(const TextFile&) = delete;
-    TextFile& operator=(const TextFile&) = delete;
-    std::string path() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 }  // namespace
 
@@ -331,6 +312,28 @@ TEST_CASE("traced generator: strips are cut to their length, and printed on the 
     }
     CHECK(on_the_back > 3);
     CHECK(on_the_back < static_cast<int>(pattern.strips.size()) / 2);
+}
+
+TEST_CASE("traced generator: lines go on to where their distance grows") {
+    const GeneratedPattern pattern = generate_traced({.field = DirectionField::parallel,
+                                                      .inner = 0,
+                                                      .outer = 20,
+                                                      .spacing = 2,
+                                                      .outer_spacing = 4,
+                                                      .length = 0});
+    // Wherever there is room for a line there is one: nothing is farther from all lines than the largest
+    // spacing.
+    for (int i = -17; i <= 17; ++i)
+        for (int j = -17; j <= 17; ++j) {
+            const Vec2 p(i, j);
+            if (p.norm() > 17.0) continue;
+            double nearest = 1e9;
+            for (const DrawnStrip& strip : pattern.strips)
+                for (const Vec2& q : line_of(strip)) nearest = std::min(nearest, (p - q).norm());
+            CAPTURE(i);
+            CAPTURE(j);
+            CHECK(nearest < 4.0);
+        }
 }
 
 TEST_CASE("traced generator: contradictions are named") {

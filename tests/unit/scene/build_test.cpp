@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
 
 #include "ruche/scene/read_scene.hpp"
 
@@ -133,4 +136,51 @@ TEST_CASE("scene_mesh: a mesh that no machine could solve is refused at once") {
     const Scene scene = parse_scene(
         "pattern.generator = \"strip\"\n[mesh]\nsize_mm = 0.01\nfabric_size_mm = 0.01\n", "k.toml");
     CHECK_THROWS_WITH_AS(scene_mesh(scene), doctest::Contains("k.toml:3: mesh.size_mm: 0.01 mm"), InputError);
+}
+
+TEST_CASE("scene_pattern: strips that end up on the back are thicker by the factor, whoever put them there") {
+    const auto thicknesses = [](const std::string& plastic) {
+        const Scene scene = parse_scene(
+            "[pattern]\ngenerator = \"staggered\"\n[pattern.options]\nrows = 2\nstrips_per_row = 2\n"
+            "half_strips = false\nalternate_sides = true\n[plastic]\nthickness_mm = 0.8\n" +
+                plastic,
+            "k.toml");
+        std::map<Side, double> found;
+        for (const Strip& strip : scene_pattern(scene).strips) found[strip.side] = strip.thickness;
+        return found;
+    };
+    const double less = 0.8 * 0.9;
+    CHECK(thicknesses("") == std::map<Side, double>{{Side::front, 0.8}, {Side::back, 0.8}});
+    CHECK(thicknesses("back_thickness_factor = 0.9") ==
+          std::map<Side, double>{{Side::front, 0.8}, {Side::back, less}});
+    CHECK(thicknesses("side = \"back\"\nback_thickness_factor = 0.9") ==
+          std::map<Side, double>{{Side::front, 0.8}, {Side::back, less}});
+    const std::map<Side, double> by_rule = thicknesses(
+        "back_thickness_factor = 0.9\n[[plastic.rule]]\nmatch = \"back\"\nside = \"back\"\nthickness_mm = "
+        "1.0\n");
+    CHECK(by_rule.at(Side::back) == 1.0 * 0.9);
+}
+
+TEST_CASE("scene_pattern: the factor of the back needs strips that have one thickness") {
+    CHECK_THROWS_WITH_AS(with("[plastic]\nback_thickness_factor = 0.9"),
+                         doctest::Contains("k.toml:3: plastic.back_thickness_factor: means nothing"),
+                         InputError);
+    CHECK_THROWS_AS(with("[plastic]\nback_thickness_factor = 0.05"), InputError);
+}
+
+TEST_CASE("scene_pattern: a field's file lies beside the scene, and its mistakes carry its own name") {
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / "ruche-scene-with-a-field" / "scenes";
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "field.csv") << "-9,-9,0,3\n9,-9,0,3\n-9,9,0,3\n9,9,0,3\n";
+    const std::string options =
+        "[pattern]\ngenerator = \"traced\"\n[pattern.options]\nfield = \"file\"\nfile = \"field.csv\"\n"
+        "inner_mm = 0\nouter_mm = ";
+    const auto scene = [&](const char* outer) {
+        return parse_scene(options + outer, (folder / "k.toml").string());
+    };
+    CHECK(scene_pattern(scene("9")).strips.size() > 4);
+    CHECK_THROWS_WITH_AS(scene_pattern(scene("9.5")), doctest::Contains("field.csv: the grid reaches over x"),
+                         InputError);
+    std::filesystem::remove_all(folder.parent_path());
 }

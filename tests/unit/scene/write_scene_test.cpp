@@ -120,6 +120,18 @@ TEST_CASE("to_toml: paths lead to the same files from another folder") {
           std::filesystem::weakly_canonical("a/c/a.svg"));
 }
 
+TEST_CASE("to_toml: a generator's file is the same from another folder, and none stays none") {
+    const std::string pattern = "[pattern]\ngenerator = \"traced\"\n[pattern.options]\nfile = ";
+    const Scene scene = parse_scene(pattern + "\"../c/field.csv\"", "a/b/k.toml");
+    const Scene moved = parse_scene(to_toml(scene, "results/x"), "results/x/scene.toml");
+    CHECK(std::filesystem::weakly_canonical(resolved_generator_options(moved).at("file")) ==
+          std::filesystem::weakly_canonical("a/c/field.csv"));
+    CHECK(pattern_files(scene) == std::vector<std::string>{"../c/field.csv"});
+    const Scene without = parse_scene(pattern + "\"\"", "a/b/k.toml");
+    CHECK(resolved_generator_options(without).at("file").empty());
+    CHECK(pattern_files(without).empty());
+}
+
 TEST_CASE("scene template: reads as a scene in which everything has its default") {
     const Scene from_template = parse_scene(scene_template(), "k.toml");
     Scene plain = parse_scene("pattern.svg = \"drawing.svg\"", "k.toml");

@@ -15,7 +15,11 @@ Estimate estimate(std::span<const double> values, double refinement) {
     const std::size_t n = values.size();
     const double fine = values[n - 1];
     const double step = fine - values[n - 2];
-    Estimate result{.value = fine, .order = std::numeric_limits<double>::quiet_NaN(), .extrapolated = fine};
+    Estimate result{.value = fine,
+                    .order = std::numeric_limits<double>::quiet_NaN(),
+                    .extrapolated = fine,
+                    .values = {values.begin(), values.end()},
+                    .refinement = refinement};
     if (n == 2) {
         const double gain = step / (refinement - 1.0);
         result.uncertainty = safety * std::abs(gain);
@@ -32,6 +36,23 @@ Estimate estimate(std::span<const double> values, double refinement) {
     } else {
         result.uncertainty = safety * std::max({std::abs(step), std::abs(before), std::abs(step + before)});
     }
+    return result;
+}
+
+Estimate quotient(const Estimate& a, const Estimate& b) {
+    assert(a.values.size() == b.values.size() && a.refinement == b.refinement);
+    std::vector<double> quotients;
+    for (std::size_t i = 0; i < a.values.size(); ++i) quotients.push_back(a.values[i] / b.values[i]);
+    Estimate result = estimate(quotients, a.refinement);
+    result.certain = a.certain && b.certain;
+    return result;
+}
+
+Estimate magnitude(const Estimate& e) {
+    std::vector<double> magnitudes;
+    for (const double value : e.values) magnitudes.push_back(std::abs(value));
+    Estimate result = estimate(magnitudes, e.refinement);
+    result.certain = e.certain;
     return result;
 }
 

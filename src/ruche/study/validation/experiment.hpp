@@ -31,7 +31,7 @@ struct MetricSpec {
     std::string label;
     std::string unit;
     std::string strips;     ///< begin of the ids of the strips that count; empty: all
-    double interior = 1.0;  ///< of strips: those inside this share of the print's box
+    double interior = 1.0;  ///< of strips and silhouettes: what lies inside this share of the print's box
     double middle = 1.0;    ///< of strips: this share of each centre line, around its middle
     double inner_mm = 0.0;  ///< annulus of the layout around `at_mm`
     double outer_mm = 1e5;

@@ -35,6 +35,36 @@ double released_area(const Triangle& t, std::span<const Vec3> shape) {
 
 constexpr double nothing_there = std::numeric_limits<double>::quiet_NaN();
 
+/// Around a strip's centre line, in the layout.
+Eigen::AlignedBox2d strip_box(const PrintMesh& layout, const MeshedStrip& strip) {
+    Eigen::AlignedBox2d box;
+    for (const auto& line : strip.centreline) {
+        for (const MeshPoint& point : line) {
+            const Triangle& t = layout.mesh.triangles[static_cast<std::size_t>(point.triangle)];
+            Vec2 p = Vec2::Zero();
+            for (int i = 0; i < 3; ++i) p += point.weights[i] * layout.mesh.vertices[t[i]];
+            box.extend(p);
+        }
+    }
+    return box;
+}
+
+/// Around all that is printed.
+Eigen::AlignedBox2d print_box(const PrintMesh& layout) {
+    Eigen::AlignedBox2d box;
+    for (int t = 0; t < layout.mesh.triangle_count(); ++t)
+        if (!layout.print[static_cast<std::size_t>(t)].bare())
+            for (const int v : layout.mesh.triangles[static_cast<std::size_t>(t)])
+                box.extend(layout.mesh.vertices[static_cast<std::size_t>(v)]);
+    return box;
+}
+
+Eigen::AlignedBox2d middle_of(const Eigen::AlignedBox2d& box, double share) {
+    // A sheet of one row is as flat as its strips: a hair of room.
+    const Vec2 half = 0.5 * share * box.sizes() + Vec2::Constant(1e-6);
+    return {box.center() - half, box.center() + half};
+}
+
 }  // namespace
 
 double transverse_stretch(const PrintMesh& layout, std::span<const Vec3> shape, const LayoutRing& ring) {
@@ -85,10 +115,12 @@ IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<cons
     return {gauss / area, bend / area};
 }
 
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape) {
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share) {
+    const Eigen::AlignedBox2d inside = middle_of(print_box(layout), share);
     Vec3 sight = Vec3::Zero();
     std::set<int> printed;
     for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
+        if (share < 1.0 && !inside.contains(layout_centroid(layout.mesh, t))) continue;
         sight += layout_area(layout.mesh, t) * deformation(layout.mesh, shape, t).col(1);
         if (layout.print[static_cast<std::size_t>(t)].bare()) continue;
         printed.insert(layout.mesh.triangles[static_cast<std::size_t>(t)].begin(),
@@ -104,22 +136,13 @@ double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape
 }
 
 std::vector<int> chosen_strips(const PrintMesh& layout, const std::string& begin, double share) {
-    Eigen::AlignedBox2d print;
-    std::vector<Eigen::AlignedBox2d> boxes(layout.strips.size());
-    for (std::size_t s = 0; s < boxes.size(); ++s) {
-        for (const auto& line : layout.strips[s].centreline) {
-            for (const MeshPoint& point : line) {
-                const Triangle& t = layout.mesh.triangles[static_cast<std::size_t>(point.triangle)];
-                Vec2 p = Vec2::Zero();
-                for (int i = 0; i < 3; ++i) p += point.weights[i] * layout.mesh.vertices[t[i]];
-                boxes[s].extend(p);
-            }
-        }
-        print.extend(boxes[s]);
+    std::vector<Eigen::AlignedBox2d> boxes;
+    Eigen::AlignedBox2d all;
+    for (const MeshedStrip& strip : layout.strips) {
+        boxes.push_back(strip_box(layout, strip));
+        all.extend(boxes.back());
     }
-    // A sheet of one row is as flat as its strips: a hair of room.
-    const Vec2 half = 0.5 * share * print.sizes() + Vec2::Constant(1e-6);
-    const Eigen::AlignedBox2d inside(print.center() - half, print.center() + half);
+    const Eigen::AlignedBox2d inside = middle_of(all, share);
     std::vector<int> chosen;
     for (std::size_t s = 0; s < boxes.size(); ++s)
         if (layout.strips[s].id.starts_with(begin) && !boxes[s].isEmpty() && inside.contains(boxes[s]))

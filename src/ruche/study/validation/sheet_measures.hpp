@@ -33,10 +33,12 @@ struct IntegratedCurvature {
 IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
                                          const LayoutRing& ring);
 
-/// Curvature of the circle through all printed vertices as one looks along the layout's y direction, where
-/// the released sheet's mean direction is meant: the silhouette of a roll seen from its front. Not negative;
-/// NaN when there is no circle.
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape);
+/// Curvature of the circle through the printed vertices as one looks along the layout's y direction, that of
+/// the released sheet in the mean: the silhouette of a roll seen from its front. Only of what lies inside the
+/// middle `share` of the box around the print; 1 counts all. Of the surface where plastic and fabric
+/// meet, as everything here: the outside of the plastic has a larger radius. Not negative; NaN when there is
+/// no circle.
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share);
 
 /// The strips whose id begins with `begin` and whose centre line lies inside the middle `share` of the box
 /// around all centre lines; indices into layout.strips.

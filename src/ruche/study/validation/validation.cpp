@@ -101,11 +101,22 @@ const ValueSeries& ExperimentOutcome::of(const std::string& variant, const std::
     return *found;
 }
 
+const char* to_text(Verdict verdict) {
+    static constexpr const char* texts[] = {"holds", "not resolved", "does not hold"};
+    return texts[static_cast<std::size_t>(verdict)];
+}
+
+static std::size_t checks_with(const Validation& validation, Verdict verdict) {
+    std::size_t count = 0;
+    for (const ExperimentOutcome& e : validation.experiments)
+        count += static_cast<std::size_t>(std::ranges::count(e.checks, verdict, &CheckOutcome::verdict));
+    return count;
+}
+
+std::size_t Validation::unresolved_checks() const { return checks_with(*this, Verdict::unresolved); }
+
 std::size_t Validation::failed_checks() const {
-    std::size_t failed = 0;
-    for (const ExperimentOutcome& e : experiments)
-        for (const CheckOutcome& check : e.checks) failed += check.holds ? 0 : 1;
-    return failed;
+    return checks_with(*this, Verdict::fails) + (quick ? 0 : unresolved_checks());
 }
 
 std::vector<ValueSeries> value_series(const ExperimentOutcome& outcome) {

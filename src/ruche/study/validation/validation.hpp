@@ -19,11 +19,21 @@ struct ValueSeries {
     std::vector<double> low, high;  ///< with the swept value off by its spread; empty without one
 };
 
+/// What values that carry an uncertainty say about a claim.
+enum class Verdict {
+    holds,       ///< for everything within the uncertainties
+    unresolved,  ///< for a part of that: it takes finer meshes
+    fails        ///< for nothing within them; or there is no number, or no certified equilibrium
+};
+
 struct CheckOutcome {
     CheckSpec check;
-    bool holds = false;
-    std::vector<std::string> details;  ///< one per value that was looked at, the failed ones first
+    Verdict verdict = Verdict::fails;
+    std::vector<std::string> details;  ///< one per value that was looked at, those against the claim first
 };
+
+/// "holds", "not resolved", "does not hold".
+const char* to_text(Verdict verdict);
 
 struct ExperimentOutcome {
     Experiment experiment;
@@ -43,7 +53,10 @@ struct Validation {
     double seconds = 0.0;      ///< by the clock, this time
     int jobs = 1;
 
+    /// Claims that were not shown. A quick run cannot show all, and does not say that it did: there those
+    /// that its meshes do not resolve are not among them.
     std::size_t failed_checks() const;
+    std::size_t unresolved_checks() const;
 };
 
 struct ValidationOptions {
@@ -61,8 +74,7 @@ struct ValidationOptions {
 /// Values with uncertainties from an experiment's outcomes, along the sweep.
 std::vector<ValueSeries> value_series(const ExperimentOutcome& outcome);
 
-/// Judges every check of an experiment whose series are there. A check holds when it does for all values
-/// within their uncertainties, and all its runs are certified equilibria.
+/// Judges every check of an experiment whose series are there, by the worst of its values.
 std::vector<CheckOutcome> judge(const ExperimentOutcome& outcome);
 
 /// One page with everything in it: claims, plots, tables, pictures, commands.

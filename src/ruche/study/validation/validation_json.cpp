@@ -13,6 +13,7 @@ ValidationJson estimate_json(double x, const Estimate& e) {
             {"uncertainty", e.uncertainty},
             {"order", e.order},
             {"extrapolated", e.extrapolated},
+            {"on_meshes", e.values},
             {"certain", e.certain}};
 }
 
@@ -29,7 +30,10 @@ ValidationJson outcome_json(const ExperimentOutcome& o) {
     const Experiment& e = o.experiment;
     ValidationJson json = {{"name", e.name}, {"title", e.title}, {"sweep", e.sweep.key}};
     for (const CheckOutcome& c : o.checks)
-        json["checks"].push_back({{"says", c.check.says}, {"holds", c.holds}, {"details", c.details}});
+        json["checks"].push_back({{"says", c.check.says},
+                                  {"verdict", to_text(c.verdict)},
+                                  {"holds", c.verdict == Verdict::holds},
+                                  {"details", c.details}});
     for (const ValueSeries& s : o.series) json["series"].push_back(series_json(s));
     for (std::size_t i = 0; i < o.runs.size(); ++i) {
         const ValidationRun& run = o.runs[i];
@@ -49,9 +53,13 @@ ValidationJson outcome_json(const ExperimentOutcome& o) {
 }  // namespace
 
 std::string validation_json(const Validation& v) {
-    ValidationJson json = {
-        {"version", RUCHE_VERSION}, {"quick", v.quick}, {"failed_checks", v.failed_checks()},
-        {"seconds", v.seconds},     {"jobs", v.jobs},   {"experiments", ValidationJson::array()}};
+    ValidationJson json = {{"version", RUCHE_VERSION},
+                           {"quick", v.quick},
+                           {"failed_checks", v.failed_checks()},
+                           {"unresolved_checks", v.unresolved_checks()},
+                           {"seconds", v.seconds},
+                           {"jobs", v.jobs},
+                           {"experiments", ValidationJson::array()}};
     for (const ExperimentOutcome& o : v.experiments) json["experiments"].push_back(outcome_json(o));
     return json.dump(1) + "\n";
 }

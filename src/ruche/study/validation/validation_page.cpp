@@ -13,25 +13,32 @@ namespace {
 
 constexpr std::string_view how_to_read =
     R"(Values are those on the finest mesh, ± what discretisation may still change (grid convergence index); a
-check holds when it does for everything in that range and all runs are certified equilibria. Error bars are what a
+check holds when it does for everything in that range and all runs are certified equilibria; it is not resolved
+when it does for a part of the range, so that finer meshes are needed to tell. Error bars are what a
 print thicker or thinner by the experiment's spread would give. Measured points stand only in the paper's pictures
 and are not drawn.)";
 
 std::string table_value(const Estimate& e) { return to_text(e) + (e.certain ? "" : " (!)"); }
 
-std::string verdict_cell(bool holds) {
-    return holds ? "<td class=\"good\">holds</td>" : "<td class=\"bad\">does not hold</td>";
+std::string verdict_cell(Verdict verdict) {
+    static constexpr const char* classes[] = {"good", "open", "bad"};
+    return fmt::format("<td class=\"{}\">{}</td>", classes[static_cast<std::size_t>(verdict)],
+                       to_text(verdict));
 }
 
 std::string overview(const Validation& v) {
     std::string rows;
     for (const ExperimentOutcome& o : v.experiments) {
-        const auto held = std::ranges::count_if(o.checks, [](const CheckOutcome& c) { return c.holds; });
+        const auto held = std::ranges::count(o.checks, Verdict::holds, &CheckOutcome::verdict);
+        const bool any_fails =
+            std::ranges::find(o.checks, Verdict::fails, &CheckOutcome::verdict) != o.checks.end();
         rows += fmt::format(
             "<tr><td><a href=\"#{0}\">{0}</a></td><td>{1}</td><td class=\"n\">{2}</td>"
             "<td class=\"{5}\">{3} of {4} checks hold</td></tr>\n",
             o.experiment.name, html_escaped(o.experiment.title), o.runs.size(), held, o.checks.size(),
-            held == std::ssize(o.checks) ? "good" : "bad");
+            held == std::ssize(o.checks) ? "good"
+            : any_fails                  ? "bad"
+                                         : "open");
     }
     return "<table><tr><th></th><th></th><th>runs</th><th></th></tr>\n" + rows + "</table>\n";
 }
@@ -44,7 +51,7 @@ std::string check_table(const ExperimentOutcome& o) {
         html += fmt::format(
             "<tr>{}<td>{}<details><summary><small>{} values</small></summary><small>{}</small>"
             "</details></td></tr>\n",
-            verdict_cell(c.holds), html_escaped(c.check.says), c.details.size(), details);
+            verdict_cell(c.verdict), html_escaped(c.check.says), c.details.size(), details);
     }
     return html + "</table>\n";
 }

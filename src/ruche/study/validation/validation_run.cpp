@@ -47,13 +47,9 @@ std::string key_of(const ValidationRun& run, const Experiment& experiment, const
     TextKey key;
     key.add(program);
     key.add(to_toml(run.scene));
-    const PatternSource& pattern = run.scene.pattern;
-    std::vector<std::string> files = {pattern.svg, pattern.mesh, pattern.thickness_table};
-    if (const auto file = pattern.generator_options.find("file"); file != pattern.generator_options.end())
-        files.push_back(file->second);
-    for (const std::string& file : files) {
+    for (const std::string& file : pattern_files(run.scene)) {
         const std::string path = resolved_path(run.scene, file);
-        if (!file.empty() && fs::is_regular_file(path)) key.add(read_file(path, "drawing", 1U << 30U));
+        if (fs::is_regular_file(path)) key.add(read_file(path, "drawing", 1U << 30U));
     }
     if (run.pull) add_fields(key, *run.pull);
     for (const MetricSpec& metric : experiment.metrics) add_fields(key, metric);
@@ -122,9 +118,10 @@ double mean_strip_curvature(const Result& result, const MetricSpec& metric) {
 }
 
 double bimetal(const Scene& scene) {
-    const double curvature =
-        strip_curvature(scene.material, scene.fabric.prestretch[0], scene.plastic.thickness_mm);
-    return scene.plastic.side == Side::front ? curvature : -curvature;
+    const bool front = scene.plastic.side == Side::front;
+    const double thickness = scene.plastic.thickness_mm * (front ? 1.0 : scene.plastic.back_thickness_factor);
+    const double curvature = strip_curvature(scene.material, scene.fabric.prestretch[0], thickness);
+    return front ? curvature : -curvature;
 }
 
 double value_of(const MetricSpec& metric, const Result& result) {
@@ -134,7 +131,7 @@ double value_of(const MetricSpec& metric, const Result& result) {
         case Measure::strip_curvature:
             return mean_strip_curvature(result, metric);
         case Measure::silhouette_curvature:
-            return std::copysign(silhouette_curvature(result.layout, result.shape),
+            return std::copysign(silhouette_curvature(result.layout, result.shape, metric.interior),
                                  mean_strip_curvature(result, metric));
         case Measure::transverse_stretch:
             return transverse_stretch(result.layout, result.shape, ring);
