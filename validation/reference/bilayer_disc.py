@@ -35,18 +35,20 @@ class Cap:
         """Stretch along the meridian, stretch around, and both curvatures (positive where the back is concave)."""
         angle, slope = self.angle @ x[: self.terms], self.slope @ x[: self.terms]
         stretch = self.stretch @ x[self.terms :]
-        around = (self.integral @ (stretch * np.cos(angle))) / self.t
-        return stretch, around, slope / stretch, np.sin(angle) / (around * self.t * RADIUS)
+        t = self.t if x.ndim == 1 else self.t[:, None]
+        around = (self.integral @ (stretch * np.cos(angle))) / t
+        return stretch, around, slope / stretch, np.sin(angle) / (around * t * RADIUS)
 
     def energy(self, x):
-        """Over 2 pi R^2."""
+        """Over 2 pi R^2; for each column of x where it has several."""
         stretch, around, along, across = self.shape(x)
         a = stretch**2, around**2
-        return np.sum(self.weights * self.t * self.laminate.density(*a, -along * a[0], -across * a[1]))
+        return (self.weights * self.t) @ self.laminate.density(*a, -along * a[0], -across * a[1])
 
     def gradient(self, x):
+        """By complex steps: exact to rounding."""
         step = 1e-30
-        return np.array([self.energy(x + 1j * step * unit).imag / step for unit in np.eye(len(x))])
+        return self.energy(x[:, None] + 1j * step * np.eye(len(x))).imag / step
 
     def hessian(self, x):
         step = 1e-5

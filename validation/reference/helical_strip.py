@@ -88,11 +88,11 @@ class HelicalStrip:
         return np.array([self.bases[k] @ out, self.shifted[k] @ across, self.shifted[k] @ along])
 
     def energy(self, x):
-        """Per layout area."""
+        """Per layout area, for each column of x."""
         omega, advance = x[0], x[1]
         p, p1, p2 = (self.curve(x, k) for k in range(3))
         zero = 0 * p[0]
-        r_x = np.array([-omega * p[1], omega * p[0], advance + zero])
+        r_x = np.array([-omega * p[1], omega * p[0], advance + zero])  # first index: the component in space
         r_xx = np.array([-(omega**2) * p[0], -(omega**2) * p[1], zero])
         r_xy = np.array([-omega * p1[1], omega * p1[0], zero])
 
@@ -102,31 +102,37 @@ class HelicalStrip:
         a = dot(r_x, r_x), dot(r_x, p1), dot(p1, p1)
         normal = np.cross(r_x, p1, axis=0) / np.sqrt(a[0] * a[2] - a[1] ** 2)
         b = dot(normal, r_xx), dot(normal, r_xy), dot(normal, p2)
-        return np.sum(self.weights * self.laminate.full_density(a, b))
+        return self.weights @ self.laminate.full_density(a, b)
 
-    def gradient(self, x):
-        """By complex steps: exact to rounding."""
-        step = 1e-30
-        return np.array([self.energy(x + 1j * step * unit).imag / step for unit in np.eye(len(x))])
+    def gradients(self, x):
+        """The gradient for each column of x, by complex steps: exact to rounding."""
+        step, (n, m) = 1e-30, x.shape
+        moved = x[:, :, None] + 1j * step * np.eye(n)[:, None, :]
+        return (self.energy(moved.reshape(n, m * n)).imag / step).reshape(m, n).T
 
-    def hessian(self, x):
-        step = 1e-5
-        rows = [(self.gradient(x + step * u) - self.gradient(x - step * u)) / (2 * step) for u in np.eye(len(x))]
-        return (np.array(rows) + np.array(rows).T) / 2
+    def gradient_and_hessian(self, x):
+        step, n = 1e-5, len(x)
+        columns = self.gradients(x[:, None] + step * np.hstack([np.zeros((n, 1)), np.eye(n), -np.eye(n)]))
+        hessian = (columns[:, 1 : 1 + n] - columns[:, 1 + n :]) / (2 * step)
+        return columns[:, 0], (hessian + hessian.T) / 2
 
     def solve(self, x):
         """Newton's method with halved steps; a positive definite Hessian at the end certifies a minimum, of all
         states of this kind: twisted ones too."""
+
+        def energy(x):
+            return self.energy(x[:, None])[0]
+
         for _ in range(300):
-            gradient = self.gradient(x)
-            values, vectors = np.linalg.eigh(self.hessian(x))
+            gradient, hessian = self.gradient_and_hessian(x)
+            values, vectors = np.linalg.eigh(hessian)
             step = -vectors @ ((vectors.T @ gradient) / np.maximum(np.abs(values), 1e-9))
             if np.max(np.abs(step)) < 1e-10:
                 assert values[0] > 0, values[0]
                 return x
             step *= min(1.0, 0.5 / np.max(np.abs(step)))
             share = 1.0
-            while self.energy(x + share * step) > self.energy(x) + 1e-14 * abs(self.energy(x)) and share > 1e-6:
+            while energy(x + share * step) > energy(x) + 1e-14 * abs(energy(x)) and share > 1e-6:
                 share /= 2
             x = x + share * step
         raise RuntimeError("Newton's method did not converge")
