@@ -13,7 +13,8 @@ from infinite_strip import Laminate
 from numpy.polynomial import legendre
 
 RADIUS, MIDDLE = 20.0, 10.0  # mm, of the disc and of the part that is measured
-PRESTRETCHES = (1.005, 1.01, 1.02, 1.03, 1.04, 1.05, 1.07, 1.1, 1.15, 1.2)
+CAPS = (1.005, 1.01, 1.02, 1.03, 1.04, 1.05, 1.07, 1.1, 1.15, 1.2)
+CYLINDERS = (1.03, 1.05, 1.07, 1.1, 1.2, 1.4, 1.7)
 
 
 class Cap:
@@ -81,7 +82,7 @@ class Cap:
 def caps(terms=16):
     """Mean curvature of the middle over that of a narrow strip, for each pre-stretch: the small disc's is 1."""
     x, result = None, []
-    for prestretch in PRESTRETCHES:
+    for prestretch in CAPS:
         laminate = Laminate(prestretch=prestretch)
         cap = Cap(laminate, terms)
         if x is None:
@@ -121,9 +122,9 @@ def main():
     folder = Path(__file__).resolve().parents[1] / "bilayer-disc"
     coarse, fine = caps(12), caps(16)
     assert np.max(np.abs(np.subtract(coarse, fine))) < 1e-7, (coarse, fine)
-    wide = [cylinder(Laminate(prestretch=s)) for s in PRESTRETCHES]
-    for name, values in (("cap", fine), ("cylinder", wide)):
-        rows = "".join(f"{s:g},{v:.8f}\n" for s, v in zip(PRESTRETCHES, values))
+    wide = [cylinder(Laminate(prestretch=s)) for s in CYLINDERS]
+    for name, prestretches, values in (("cap", CAPS, fine), ("cylinder", CYLINDERS, wide)):
+        rows = "".join(f"{s:g},{v:.8f}\n" for s, v in zip(prestretches, values))
         (folder / f"{name}.csv").write_text("prestretch,mean_curvature_over_narrow_strip\n" + rows)
 
 
