@@ -327,7 +327,7 @@ TEST_CASE("experiments: variants of a file of their own come first, and metrics 
         "scene = \"scene.toml\"\n[[metric]]\nname = \"m\"\nover = \"n\"\n[[check]]\n"
         "kind = \"positive\"\nmetric = \"m\"\n";
     CHECK(ExperimentFolder(missing).problem().find("no metric \"n\"") != std::string::npos);
-    CHECK(ExperimentFolder("[pull]\n[hang]\n" + missing).problem().find("stands beside a [pull]") !=
+    CHECK(ExperimentFolder(missing + "[pull]\n[hang]\n").problem().find("stands beside a [pull]") !=
           std::string::npos);
 }
 
