@@ -87,6 +87,14 @@ def test_the_quick_subset_holds(tmp_path):
     assert all(run["certain"] for e in result["experiments"] for run in e["runs"])
 
 
+@pytest.mark.skipif(SANITIZED, reason="whole releases")
+def test_known_solutions_of_shells_hold_in_their_quick_subset(tmp_path):
+    run("--quick", "--set-of", "shell", "-o", tmp_path / "out")
+    result = json.loads((tmp_path / "out/validation.json").read_text())
+    assert result["failed_checks"] == 0
+    assert {e["name"] for e in result["experiments"]} >= {"end-loaded-strip", "heavy-strip", "bilayer-disc"}
+
+
 def test_every_experiment_can_be_read_and_its_scenes_too():
     names = [path.parent.name for path in (SOURCE / "validation").glob("*/experiment.toml")]
     assert len(names) >= 8
@@ -164,3 +172,62 @@ def test_the_infinite_strip_has_the_values_that_are_kept_and_the_bimetal_s_when_
     assert stretch == pytest.approx(0.94958916, abs=5e-9)
     # The strip leaves the bimetal with the fourth power of its width.
     assert infinite_strip.curvature(0.1) == pytest.approx(bimetal, rel=1e-7)
+
+
+def test_the_oblique_strip_has_the_values_that_are_kept_and_no_torsion_without_obliqueness():
+    import helical_strip
+    import infinite_strip
+
+    kept = {
+        name: dict(tuple(map(float, line.split(","))) for line in path.read_text().splitlines()[1:])
+        for name in ("curvature", "torsion")
+        for path in [SOURCE / f"validation/oblique-strip/{name}.csv"]
+    }
+    curvature, torsion = helical_strip.helix(helical_strip.ObliqueLaminate(axis_deg=30.0), terms=10)
+    assert curvature == pytest.approx(kept["curvature"][30.0], abs=2e-9)
+    assert torsion == pytest.approx(kept["torsion"][30.0], abs=2e-9)
+    assert abs(torsion) > 1e-3
+    # The other side of the axis is the mirror image, and even pre-stretch the surface of revolution.
+    mirrored = helical_strip.helix(helical_strip.ObliqueLaminate(axis_deg=-30.0), terms=8)
+    assert mirrored == pytest.approx((curvature, -torsion), abs=1e-7)
+    even = helical_strip.ObliqueLaminate(second_prestretch=1.7, axis_deg=30.0)
+    curvature, torsion = helical_strip.helix(even, width=3.0, terms=10)
+    assert curvature == pytest.approx(infinite_strip.curvature(3.0, terms=12), abs=1e-8)
+    assert abs(torsion) < 1e-9
+
+
+def test_elastica_have_the_values_that_are_kept_and_those_of_linear_beams():
+    import elastica
+
+    for name, solve, stiffness in (
+        ("end-loaded-strip", elastica.end_loaded, 1),
+        ("pushed-strip", elastica.pushed, -1),
+    ):
+        rows = (SOURCE / f"validation/{name}/height.csv").read_text().splitlines()[1:]
+        for row in rows:
+            force, height = map(float, row.split(","))
+            load = stiffness * force * elastica.LENGTH**2 / (elastica.WIDTH * elastica.STIFFNESS)
+            assert elastica.LENGTH * solve(load)[1] == pytest.approx(height, abs=2e-6)
+    assert elastica.end_loaded(1e-3)[1] == pytest.approx(1e-3 / 3, rel=1e-5)
+    assert elastica.heavy(1e-3, False)[1] == pytest.approx(1e-3 / 8, rel=1e-5)
+    assert elastica.heavy(1e-3, True)[1] == pytest.approx(1e-3 / 24, rel=1e-5)
+    table = (SOURCE / "tests/data/reference/cantilever_master_curve.csv").read_text().splitlines()[1:]
+    for line in table[::5]:
+        gamma, x, y = map(float, line.split(",")[:3])
+        if 0.1 <= gamma <= 500:
+            assert elastica.heavy(gamma, False) == pytest.approx((x, y), abs=2e-8)
+
+
+def test_a_small_disc_is_the_narrow_strip_s_cap_and_a_wide_one_the_closed_form_s_cylinder():
+    import bilayer_disc
+
+    laminate = bilayer_disc.Laminate(prestretch=1.7)
+    assert bilayer_disc.cylinder(laminate) == pytest.approx(0.220942 / 2 / 0.152362385, rel=3e-6)
+    assert bilayer_disc.cylinder(bilayer_disc.Laminate(prestretch=1.0001)) == pytest.approx(0.7, rel=1e-4)
+    kept = (SOURCE / "validation/bilayer-disc/cap.csv").read_text().splitlines()[1:]
+    values = bilayer_disc.caps(12)
+    assert [float(line.split(",")[1]) for line in kept] == pytest.approx(values, abs=1e-7)
+    assert all(later < earlier < 1 for earlier, later in zip(values, values[1:]))
+    # Where the disc leaves the cap, by uniform curvature: h = 0.6 mm of plastic, the fabric hardly counts.
+    limit = bilayer_disc.bifurcation(bilayer_disc.Laminate(prestretch=1.05))
+    assert limit == pytest.approx(8 * 0.61 / 20**2 / 1.4**1.5, rel=0.1)

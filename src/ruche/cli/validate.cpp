@@ -47,8 +47,8 @@ static std::vector<Experiment> chosen_experiments(const ValidateArguments& argum
     std::vector<Experiment> chosen;
     for (const std::string& name : arguments.names.empty() ? all : arguments.names) {
         Experiment e = read_experiment((std::filesystem::path(arguments.experiments) / name).string());
-        const bool in_set =
-            arguments.set == "all" || (e.set == ExperimentSet::paper) == (arguments.set == "paper");
+        const bool in_set = arguments.set == "all" ||
+                            experiment_set_names()[static_cast<std::size_t>(e.set)] == arguments.set;
         // A name says enough; a set, and the quick subset, choose from all.
         if (!arguments.names.empty() || (in_set && (e.quick || !arguments.quick)))
             chosen.push_back(std::move(e));
@@ -115,7 +115,7 @@ void add_validate(CLI::App& program, Action& action) {
     verb->add_option("names", arguments->names, "Experiments; without names all of the set")
         ->type_name("NAME");
     verb->add_option("--set-of", arguments->set, "Which set, where no names are given")
-        ->check(CLI::IsMember({"paper", "numerics", "all"}));
+        ->check(CLI::IsMember({"paper", "numerics", "shell", "all"}));
     verb->add_option("--experiments", arguments->experiments, "Folder that the experiments are in")
         ->type_name("DIR");
     verb->add_option(

@@ -9,6 +9,7 @@
 
 #include "ruche/core/error.hpp"
 #include "ruche/meshing/structured.hpp"
+#include "ruche/study/validation/choice_table.hpp"
 #include "ruche/study/validation/sheet_measures.hpp"
 
 using namespace ruche;
@@ -66,11 +67,14 @@ class ExperimentFolder {
         path_ = std::filesystem::temp_directory_path() /
                 fmt::format("ruche-experiment-{}", reinterpret_cast<std::uintptr_t>(this));
         std::filesystem::create_directories(path_);
-        std::ofstream(path_ / "experiment.toml") << text;
+        write("experiment.toml", text);
     }
     ~ExperimentFolder() { std::filesystem::remove_all(path_); }
     ExperimentFolder(const ExperimentFolder&) = delete;
     ExperimentFolder& operator=(const ExperimentFolder&) = delete;
+
+    void write(const char* file, const std::string& text) const { std::ofstream(path_ / file) << text; }
+    std::string path() const { return path_.string(); }
 
     std::string problem() const {
         try {
@@ -245,6 +249,54 @@ TEST_CASE(
     CHECK(std::isnan(integrated_curvature(layout, rolled, {.inner = 500.0, .outer = 600.0}).gauss));
 }
 
+TEST_CASE(
+    "shape measures: fitted curvatures of a sphere, a cylinder and a saddle, without the ring's border") {
+    const PrintMesh layout = sheet(20.0, 20.0, 40);
+    const LayoutRing middle{.middle = Vec2(10, 10), .outer = 4.0};
+    const double radius = 30.0;
+    const auto rolled = placed(layout, [&](const Vec2& p) {
+        const double angle = (p.x() - 10.0) / radius;
+        return Vec3(radius * std::sin(angle), p.y(), radius * std::cos(angle));  // the back is concave
+    });
+    // The second ring of neighbours is 1 mm away: a quadric misses (1/30)^2 of the curvature at most.
+    const VertexCurvature cylinder = fitted_curvature(layout, rolled, middle);
+    CHECK(cylinder.max == doctest::Approx(1.0 / radius).epsilon(2e-3));
+    CHECK(std::abs(cylinder.min) < 2e-3 / radius);
+    const auto saddle = placed(layout, [&](const Vec2& p) {
+        const double x = p.x() - 10.0;
+        const double y = p.y() - 10.0;
+        return Vec3(x, y, (x * x - y * y) / (2.0 * 1000.0));
+    });
+    const VertexCurvature both = fitted_curvature(layout, saddle, middle);
+    CHECK(both.max == doctest::Approx(1e-3).epsilon(1e-3));
+    CHECK(both.min == doctest::Approx(-1e-3).epsilon(1e-3));
+    CHECK(std::isnan(fitted_curvature(layout, saddle, {.inner = 500.0, .outer = 600.0}).max));
+}
+
+TEST_CASE("shape measures: a point of the layout is found where it went, a strip of it as a helix") {
+    PrintMesh layout = sheet(20.0, 2.0, 8);
+    const double radius = 5.0;
+    const double advance = 2.0;  // per radian
+    const double length = std::hypot(radius, advance);
+    const auto shape = placed(layout, [&](const Vec2& p) {
+        const double at = p.x() / length;
+        // A ruled strip around the helix y = 1: its other points do not matter.
+        const double out = radius + (p.y() - 1.0);
+        return Vec3(out * std::cos(at), out * std::sin(at), advance * at);
+    });
+    const Vec3 end = position_of(layout, shape, Vec2(20.0, 1.0));
+    CHECK((end -
+           Vec3(radius * std::cos(20.0 / length), radius * std::sin(20.0 / length), advance * 20.0 / length))
+              .norm() < 1e-12);
+    CHECK(std::isnan(position_of(layout, shape, Vec2(21.0, 1.0)).x()));
+    layout.strips.push_back(
+        {.id = "s", .centreline = {points_on_mesh(layout.mesh, {{0.0, 1.0}, {20.0, 1.0}}, 81)}});
+    const HelixFit helix = strip_helix(layout, shape, 0);
+    // Chords of 0.25 mm lie 0.25^2/(8 radius^2) = 3e-4 of the radius inside.
+    CHECK(helix.curvature == doctest::Approx(radius / (length * length)).epsilon(1e-3));
+    CHECK(helix.torsion == doctest::Approx(advance / (length * length)).epsilon(1e-3));
+}
+
 TEST_CASE("shape measures: the stretch around the middle is that of the shape, whatever the radial one") {
     const PrintMesh layout = sheet(20.0, 20.0, 20);
     const auto shape = placed(layout, [](const Vec2& p) {
@@ -309,6 +361,43 @@ TEST_CASE("experiments: a mistake is named with its place") {
     CHECK(problem(good + "[[check]]\nkind = \"within\"\nmetric = \"m\"\nreference = \"n\"\n")
               .find("no metric or reference \"n\"") != std::string::npos);
     CHECK(problem(good + "[[picture]]\nvariant = \"b\"\n").find("no variant \"b\"") != std::string::npos);
+}
+
+TEST_CASE("experiments: variants of a file of their own come first, and metrics can be shares of others") {
+    const std::string text =
+        "scene = \"scene.toml\"\nvariants_from = \"shared.toml\"\n[[variant]]\nname = \"own\"\n"
+        "[[metric]]\nname = \"m\"\nover = \"n\"\n[[metric]]\nname = \"n\"\n"
+        "[[check]]\nkind = \"positive\"\nmetric = \"m\"\n";
+    const ExperimentFolder folder(text);
+    folder.write("shared.toml",
+                 "[[variant]]\nname = \"first\"\n[[variant]]\nname = \"second\"\nset = [\"a=1\"]\n");
+    const Experiment e = read_experiment(folder.path());
+    REQUIRE(e.variants.size() == 3);
+    CHECK(e.variants[0].name == "first");
+    CHECK(e.variants[1].set == std::vector<std::string>{"a=1"});
+    CHECK(e.variants[2].name == "own");
+    CHECK(e.metrics[0].over == "n");
+    folder.write("shared.toml", "[[variants]]\nname = \"first\"\n");
+    CHECK(folder.problem().find("did you mean variant") != std::string::npos);
+    const std::string missing =
+        "scene = \"scene.toml\"\n[[metric]]\nname = \"m\"\nover = \"n\"\n[[check]]\n"
+        "kind = \"positive\"\nmetric = \"m\"\n";
+    CHECK(ExperimentFolder(missing).problem().find("no metric \"n\"") != std::string::npos);
+    CHECK(ExperimentFolder(missing + "[pull]\n[hang]\n").problem().find("stands beside a [pull]") !=
+          std::string::npos);
+}
+
+TEST_CASE("page: choices are shares of the first variant, with the range that both uncertainties leave") {
+    Validation validation;
+    validation.experiments.push_back(measured({2.0}, {1.0}));
+    CHECK(choice_table(validation).empty());
+    validation.experiments[0].experiment.set = ExperimentSet::numerics;
+    validation.experiments[0].experiment.name = "folder";
+    const std::string html = choice_table(validation);
+    CHECK(html.find("2 ± 0.1") != std::string::npos);
+    // 0.5 (0.1/1 + 0.1/2)
+    CHECK(html.find("× 0.500 ± 0.075") != std::string::npos);
+    CHECK(html.find("#folder") != std::string::npos);
 }
 
 TEST_CASE("experiments: all that come with the source can be read, with every scene of every run") {

@@ -77,6 +77,28 @@ void require_named(const std::vector<Spec>& list, const std::string& wanted, con
                      fmt::format("There are {}.", fmt::join(names, ", ")));
 }
 
+template <class Sample>
+void read_sample(TableReader& reader, const char* key, std::optional<Sample>& sample) {
+    const Node* node = reader.take_table(key);
+    if (node == nullptr) return;
+    TableReader table(*node, key);
+    table.read(sample.emplace());
+    table.finish();
+}
+
+/// Those of the file that `variants_from` names, then the experiment's own.
+void read_variants(TableReader& reader, Experiment& e) {
+    const auto rest = [](TableReader& table, VariantSpec& v) { v.set = text_list(table, "set"); };
+    if (!e.variants_from.empty()) {
+        const Node root = read_toml((fs::path(e.file).parent_path() / e.variants_from).string());
+        TableReader shared(root, "");
+        e.variants = specs_of<VariantSpec>(shared, "variant", rest);
+        shared.finish();
+    }
+    for (VariantSpec& own : specs_of<VariantSpec>(reader, "variant", rest))
+        e.variants.push_back(std::move(own));
+}
+
 void read_curve(ReferenceCurve& curve, const Experiment& experiment, const Place& place) {
     const std::string path = (fs::path(experiment.file).parent_path() / curve.file).string();
     const std::string text = read_file(path, "reference curve", 1U << 20U);
@@ -131,6 +153,9 @@ void check_names(const Experiment& e) {
             throw InputError(at("check", i, "kind"), "compares with nothing",
                              "Name an other_variant or an other_metric.");
     }
+    for (std::size_t i = 0; i < e.metrics.size(); ++i)
+        if (!e.metrics[i].over.empty())
+            require_named(e.metrics, e.metrics[i].over, at("metric", i, "over"), "metric");
     for (std::size_t i = 0; i < e.pictures.size(); ++i)
         require_named(e.variants, e.pictures[i].variant, at("picture", i, "variant"), "variant");
 }
@@ -153,11 +178,10 @@ Experiment read_experiment(const std::string& folder) {
     TableReader reader(root, "");
     reader.read(e);
     const auto nothing = [](TableReader&, const auto&) {};
-    if (const Node* node = reader.take_table("pull")) {
-        TableReader table(*node, "pull");
-        table.read(e.pull.emplace());
-        table.finish();
-    }
+    read_sample(reader, "pull", e.pull);
+    read_sample(reader, "hang", e.hang);
+    if (e.pull && e.hang)
+        throw InputError(reader.place_of_key("hang"), "stands beside a [pull]", "A run is one or the other.");
     if (reader.has("meshes")) e.meshes = number_list(reader, "meshes");
     require_factor(e.meshes, reader.place_of_key("meshes"));
     e.quick_meshes = number_list(reader, "quick_meshes");
@@ -173,8 +197,7 @@ Experiment read_experiment(const std::string& folder) {
         if (e.sweep.key.empty() || e.sweep.values.empty())
             throw InputError(place_of(*node, "sweep"), "needs a key and values");
     }
-    e.variants = specs_of<VariantSpec>(
-        reader, "variant", [](TableReader& table, VariantSpec& v) { v.set = text_list(table, "set"); });
+    read_variants(reader, e);
     if (e.variants.empty()) e.variants.push_back({.name = "as the scene"});
     e.metrics = specs_of<MetricSpec>(reader, "metric", nothing);
     e.references = specs_of<ReferenceCurve>(reader, "reference", nothing);

@@ -2,26 +2,38 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ruche/core/fields.hpp"
+#include "ruche/study/cantilever_sample.hpp"
 #include "ruche/study/clamped_sample.hpp"
 
 namespace ruche {
 
 /// What is measured on a run. All curvatures in 1/mm, positive where the concave side is the back.
 enum class Measure {
-    strip_curvature,       ///< of the strips' centre lines, mean
-    silhouette_curvature,  ///< of a circle around the print as seen along the layout's y; with the strips'
-                           ///< sign
-    transverse_stretch,    ///< released over printed length around the layout's origin, mean over an annulus
-    gauss_curvature,       ///< integral over an annulus of the layout, over its released area, 1/mm^2
-    mean_curvature,        ///< the same for (k1 + k2)/2
-    energy,                ///< mJ
-    bimetal_curvature,     ///< closed form of a narrow free strip, with the scene's thickness and side
-    clamped_force,         ///< N, that a clamped sample of bare fabric is pulled with
-    law_force  ///< N, of the closed law times the sample's width: transverse and shear strain free
+    strip_curvature,        ///< of the strips' centre lines, mean
+    silhouette_curvature,   ///< of a circle around the print as seen along the layout's y; with the strips'
+                            ///< sign
+    transverse_stretch,     ///< released over printed length around the layout's origin, mean over an annulus
+    gauss_curvature,        ///< integral over an annulus of the layout, over its released area, 1/mm^2
+    mean_curvature,         ///< the same for (k1 + k2)/2
+    fitted_mean_curvature,  ///< (k1 + k2)/2 by quadrics fitted at the annulus' vertices, mean over its area
+    larger_curvature,       ///< the same for the larger of k1 and k2
+    smaller_curvature,      ///< the same for the smaller one
+    helix_curvature,        ///< of the helix through the first strip's centre line, with the strips' sign
+    helix_torsion,          ///< of that helix, 1/mm; positive: right-handed
+    position_x,             ///< of the layout's point `at_mm`, mm
+    position_z,             ///< the same, along the flat layout's front normal
+    energy,                 ///< mJ
+    bimetal_curvature,      ///< closed form of a narrow free strip, with the scene's thickness and side
+    clamped_force,          ///< N, that a clamped sample of bare fabric is pulled with
+    law_force,      ///< N, of the closed law times the sample's width: transverse and shear strain free
+    hanging_slope,  ///< of a fabric cantilever: how far its tip hangs down over how far it reaches
+    elastica_slope  ///< the same of the inextensible heavy elastica (study/calibration/elastica)
 };
 
 /// [[metric]]
@@ -37,6 +49,7 @@ struct MetricSpec {
     double outer_mm = 1e5;
     std::array<double, 2> at_mm = {0, 0};
     double strain = 0.7;  ///< engineering strain of a clamped sample
+    std::string over;     ///< another metric of the same run that this one is divided by
 };
 
 /// What a check says about values that all carry an uncertainty; it must hold for every value in it.
@@ -77,7 +90,7 @@ struct VariantSpec {
 
 /// [sweep]
 struct SweepSpec {
-    std::string key;    ///< of the scene, or "pull.angle_deg"
+    std::string key;    ///< of the scene, or "pull.angle_deg", "hang.length_mm"
     std::string label;  ///< of the axis
     std::vector<double> values;
     std::vector<double> quick;  ///< values of the quick subset
@@ -89,6 +102,7 @@ struct ReferenceCurve {
     std::string name;
     std::string label;
     std::string file;
+    std::string axis;  ///< label of the plot that it is drawn in; empty: the first one
     std::vector<double> x, y;
 };
 
@@ -99,7 +113,10 @@ struct PictureSpec {
     double at = 0.0;  ///< of the sweep
 };
 
-enum class ExperimentSet { paper, numerics };
+enum class ExperimentSet { paper, numerics, shell };
+
+/// Their names, in that order.
+std::span<const std::string_view> experiment_set_names();
 
 /// One folder of `validation/`: an experiment.toml with the scenes it runs.
 struct Experiment {
@@ -107,10 +124,12 @@ struct Experiment {
     std::string file;  ///< experiment.toml
     std::string title;
     ExperimentSet set = ExperimentSet::paper;
-    std::string shows;                        ///< what must be seen
-    std::string known;                        ///< what is known, from where, and what cannot be compared
-    std::string scene;                        ///< scene file, relative to the folder
-    std::optional<ClampedSample> pull;        ///< clamped samples of the scene's fabric in place of releases
+    std::string shows;                  ///< what must be seen
+    std::string known;                  ///< what is known, from where, and what cannot be compared
+    std::string scene;                  ///< scene file, relative to the folder
+    std::string variants_from;          ///< file whose [[variant]] tables come first, relative to the folder
+    std::optional<ClampedSample> pull;  ///< clamped samples of the scene's fabric in place of releases
+    std::optional<CantileverSample> hang;     ///< or strips of it that hang from a clamp
     std::vector<double> meshes = {1.0, 0.5};  ///< element sizes over the scene's, falling by one factor
     std::vector<double> quick_meshes;         ///< of the quick subset
     SweepSpec sweep;
@@ -130,6 +149,8 @@ template <>
 std::span<const Field<Experiment>> fields<Experiment>();
 template <>
 std::span<const Field<ClampedSample>> fields<ClampedSample>();
+template <>
+std::span<const Field<CantileverSample>> fields<CantileverSample>();
 template <>
 std::span<const Field<SweepSpec>> fields<SweepSpec>();
 template <>

@@ -3,13 +3,18 @@
 namespace ruche {
 
 namespace {
-constexpr std::string_view experiment_sets[] = {"paper", "numerics"};
+constexpr std::string_view experiment_sets[] = {"paper", "numerics", "shell"};
 constexpr std::string_view measure_names[] = {
-    "strip_curvature", "silhouette_curvature", "transverse_stretch", "gauss_curvature", "mean_curvature",
-    "energy",          "bimetal_curvature",    "clamped_force",      "law_force"};
+    "strip_curvature", "silhouette_curvature",  "transverse_stretch", "gauss_curvature",
+    "mean_curvature",  "fitted_mean_curvature", "larger_curvature",   "smaller_curvature",
+    "helix_curvature", "helix_torsion",         "position_x",         "position_z",
+    "energy",          "bimetal_curvature",     "clamped_force",      "law_force",
+    "hanging_slope",   "elastica_slope"};
 constexpr std::string_view check_kinds[] = {"falls",   "rises", "positive", "negative", "within",
                                             "exceeds", "ratio", "in_range", "resolved"};
 }  // namespace
+
+std::span<const std::string_view> experiment_set_names() { return experiment_sets; }
 
 template <>
 std::span<const Field<Experiment>> fields<Experiment>() {
@@ -17,10 +22,13 @@ std::span<const Field<Experiment>> fields<Experiment>() {
     static const Field<E> table[] = {
         {"title", &E::title, "", -infinity, infinity, "Heading in the report."},
         {"set", choice<&E::set>(experiment_sets), "", 0, 0,
-         "Which set it belongs to: the paper's experiments, or what numerical choices do."},
+         "Which set it belongs to: the paper's experiments, what numerical choices do, or known solutions of "
+         "shells and rods."},
         {"shows", &E::shows, "", -infinity, infinity, "What must be seen."},
         {"known", &E::known, "", -infinity, infinity, "What is known, from where; what cannot be compared."},
         {"scene", &E::scene, "", -infinity, infinity, "Scene file, relative to the experiment's folder."},
+        {"variants_from", &E::variants_from, "", -infinity, infinity,
+         "File with [[variant]] tables that come before those written here, relative to the folder."},
         {"quick", &E::quick, "", 0, 0, "Whether it takes part in the quick subset."},
     };
     return table;
@@ -39,10 +47,23 @@ std::span<const Field<ClampedSample>> fields<ClampedSample>() {
 }
 
 template <>
+std::span<const Field<CantileverSample>> fields<CantileverSample>() {
+    using C = CantileverSample;
+    static const Field<C> table[] = {
+        {"length_mm", &C::length_mm, "mm", 0.1, 1e4, "Length beyond the clamp."},
+        {"width_mm", &C::width_mm, "mm", 0.1, 1e4, "Width of the strip."},
+        {"angle_deg", &C::angle_deg, "deg", -360, 360, "From the fabric's first axis to the strip."},
+        {"columns", &C::columns, "", 4, 1000, "Elements along the strip."},
+    };
+    return table;
+}
+
+template <>
 std::span<const Field<SweepSpec>> fields<SweepSpec>() {
     using S = SweepSpec;
     static const Field<S> table[] = {
-        {"key", &S::key, "", -infinity, infinity, "Key of the scene that is swept, or pull.angle_deg."},
+        {"key", &S::key, "", -infinity, infinity,
+         "Key of the scene that is swept, or of the sample: pull.angle_deg."},
         {"label", &S::label, "", -infinity, infinity, "What stands at the axis of plots."},
         {"spread", &S::spread, "", 0, infinity,
          "Error bars: the metric with the swept value larger and smaller by this."},
@@ -77,6 +98,7 @@ std::span<const Field<MetricSpec>> fields<MetricSpec>() {
         {"outer_mm", &M::outer_mm, "mm", 0, 1e5, "Outer radius of the part of the layout that counts."},
         {"at_mm", &M::at_mm, "mm", -1e5, 1e5, "Middle of that part, in the layout."},
         {"strain", &M::strain, "", -0.99, 10, "Engineering strain of a clamped sample."},
+        {"over", &M::over, "", -infinity, infinity, "Another metric of the run; this one is divided by it."},
     };
     return table;
 }
@@ -89,6 +111,8 @@ std::span<const Field<ReferenceCurve>> fields<ReferenceCurve>() {
         {"label", &R::label, "", -infinity, infinity, "Name in legends."},
         {"file", &R::file, "", -infinity, infinity,
          "CSV file with a header: value of the sweep, value of the reference."},
+        {"axis", &R::axis, "", -infinity, infinity,
+         "Label of the metric in whose plot it is drawn; else the first plot."},
     };
     return table;
 }

@@ -4,11 +4,13 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "ruche/geometry/circle_fit.hpp"
 #include "ruche/geometry/layout_frame.hpp"
 #include "ruche/geometry/strain_measures.hpp"
+#include "ruche/meshing/point_locator.hpp"
 
 namespace ruche {
 namespace {
@@ -65,6 +67,13 @@ Eigen::AlignedBox2d middle_of(const Eigen::AlignedBox2d& box, double share) {
     return {box.center() - half, box.center() + half};
 }
 
+Vec3 released_point(const PrintMesh& layout, std::span<const Vec3> shape, const MeshPoint& at) {
+    Vec3 sum = Vec3::Zero();
+    for (int i = 0; i < 3; ++i)
+        sum += at.weights[i] * shape[layout.mesh.triangles[static_cast<std::size_t>(at.triangle)][i]];
+    return sum;
+}
+
 }  // namespace
 
 double transverse_stretch(const PrintMesh& layout, std::span<const Vec3> shape, const LayoutRing& ring) {
@@ -113,6 +122,41 @@ IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<cons
         if (ring.holds(mesh.vertices[v])) gauss += defect[v];
     if (!(area > 0.0)) return {nothing_there, nothing_there};
     return {gauss / area, bend / area};
+}
+
+VertexCurvature fitted_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
+                                 const LayoutRing& ring) {
+    const std::vector<Vec3> positions(shape.begin(), shape.end());
+    const std::vector<VertexCurvature> at_vertices =
+        vertex_curvatures(layout.mesh.triangles, positions, vertex_normals(layout.mesh.triangles, positions));
+    double area = 0.0;
+    VertexCurvature sum;
+    for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
+        const double share = layout_area(layout.mesh, t) / 3.0;
+        for (const int v : layout.mesh.triangles[static_cast<std::size_t>(t)]) {
+            if (!ring.holds(layout.mesh.vertices[v])) continue;
+            area += share;
+            sum.max += share * at_vertices[v].max;
+            sum.min += share * at_vertices[v].min;
+        }
+    }
+    if (!(area > 0.0)) return {nothing_there, nothing_there};
+    return {sum.max / area, sum.min / area};
+}
+
+Vec3 position_of(const PrintMesh& layout, std::span<const Vec3> shape, const Vec2& point) {
+    constexpr double rounding = 1e-6;  // mm: a point of the outline may lie a hair outside
+    const std::optional<MeshPoint> at = PointLocator(layout.mesh).find(point, rounding);
+    return at ? released_point(layout, shape, *at) : Vec3::Constant(nothing_there);
+}
+
+HelixFit strip_helix(const PrintMesh& layout, std::span<const Vec3> shape, int strip) {
+    const auto& lines = layout.strips[static_cast<std::size_t>(strip)].centreline;
+    if (lines.empty()) return {};
+    std::vector<Vec3> points;
+    points.reserve(lines.front().size());
+    for (const MeshPoint& at : lines.front()) points.push_back(released_point(layout, shape, at));
+    return fit_helix(points);
 }
 
 double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share) {

@@ -2,7 +2,9 @@
 
 #include <span>
 
+#include "ruche/geometry/helix_fit.hpp"
 #include "ruche/meshing/print_mesh.hpp"
+#include "ruche/output/curvature.hpp"
 
 namespace ruche {
 
@@ -32,6 +34,19 @@ struct IntegratedCurvature {
 /// smooth surface (Cohen-Steiner and Morvan 2003). NaN where the ring holds no triangles.
 IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
                                          const LayoutRing& ring);
+
+/// Principal curvatures and their mean from quadrics fitted at the vertices (output/curvature), weighted with
+/// their layout area; 1/mm, positive where the back is concave. Unlike the integrals it does not count what
+/// the ring's border cuts, and it smooths ripples that are as short as elements. NaN where the ring holds no
+/// vertices.
+VertexCurvature fitted_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
+                                 const LayoutRing& ring);
+
+/// Where the layout's point is in the released shape. NaN where the layout has no such point.
+Vec3 position_of(const PrintMesh& layout, std::span<const Vec3> shape, const Vec2& point);
+
+/// The helix through the released centre line of a strip, its first one. Not valid without one.
+HelixFit strip_helix(const PrintMesh& layout, std::span<const Vec3> shape, int strip);
 
 /// Curvature of the circle through the printed vertices as one looks along the layout's y direction, that of
 /// the released sheet in the mean: the silhouette of a roll seen from its front. Only of what lies inside the

@@ -6,6 +6,7 @@
 #include "ruche/output/packed_arrays.hpp"
 #include "ruche/study/calibration/plot.hpp"
 #include "ruche/study/html_page.hpp"
+#include "ruche/study/validation/choice_table.hpp"
 #include "ruche/study/validation/validation.hpp"
 
 namespace ruche {
@@ -15,10 +16,17 @@ constexpr std::string_view how_to_read =
     R"(Values are those on the finest mesh, ± what discretisation may still change (grid convergence index); a
 check holds when it does for everything in that range and all runs are certified equilibria; it is not resolved
 when it does for a part of the range, so that finer meshes are needed to tell. Error bars are what a
-print thicker or thinner by the experiment's spread would give. Measured points stand only in the paper's pictures
-and are not drawn.)";
+print thicker or thinner by the experiment's spread would give. Where three meshes approach a limit in order, the
+observed order and Richardson's estimate of the limit stand below the value. Measured points stand only in the
+paper's pictures and are not drawn.)";
 
 std::string table_value(const Estimate& e) { return to_text(e) + (e.certain ? "" : " (!)"); }
+
+/// Observed order and Richardson's estimate of the limit, in small letters.
+std::string limit_of(const Estimate& e) {
+    if (!std::isfinite(e.order)) return {};
+    return fmt::format("<br><small>order {:.2g}, limit {:.5g}</small>", e.order, e.extrapolated);
+}
 
 std::string verdict_cell(Verdict verdict) {
     static constexpr const char* classes[] = {"good", "open", "bad"};
@@ -89,12 +97,12 @@ std::string plots(const ExperimentOutcome& o) {
         }
     }
     std::string svg;
-    for (std::size_t i = 0; i < drawn.size(); ++i) {
-        if (i == 0)
-            for (const ReferenceCurve& r : e.references)
-                drawn[i].series.push_back(
+    for (Plot& plot : drawn) {
+        for (const ReferenceCurve& r : e.references)
+            if (plot.y_label == (r.axis.empty() ? drawn.front().y_label : r.axis))
+                plot.series.push_back(
                     {.label = r.label, .colour = "#000000", .x = r.x, .y = r.y, .dots = true, .size = 3.0});
-        svg += svg_plot(drawn[i]);
+        svg += svg_plot(plot);
     }
     return "<div class=\"plots\">" + svg + "</div>\n";
 }
@@ -115,8 +123,10 @@ std::string value_table(const ExperimentOutcome& o) {
         for (std::size_t i = 0; i < first.x.size(); ++i) {
             html += fmt::format("<tr><td>{}</td>", html_escaped(variant.name));
             if (!e.sweep.key.empty()) html += fmt::format("<td class=\"n\">{:g}</td>", first.x[i]);
-            for (const MetricSpec& m : e.metrics)
-                html += fmt::format("<td class=\"n\">{}</td>", table_value(o.of(variant.name, m.name).y[i]));
+            for (const MetricSpec& m : e.metrics) {
+                const Estimate& value = o.of(variant.name, m.name).y[i];
+                html += fmt::format("<td class=\"n\">{}{}</td>", table_value(value), limit_of(value));
+            }
             html += "</tr>\n";
         }
     }
@@ -160,39 +170,6 @@ std::string run_list(const ExperimentOutcome& o) {
     return html + "</table></details>\n";
 }
 
-/// What each choice does to each experiment of the numerics: the first metric over that of the first variant.
-std::string choices(const Validation& v) {
-    std::vector<const ExperimentOutcome*> list;
-    for (const ExperimentOutcome& o : v.experiments)
-        if (o.experiment.set == ExperimentSet::numerics) list.push_back(&o);
-    if (list.empty()) return {};
-    std::string html =
-        "<h2>What each choice does</h2>\n" +
-        html_paragraph("The first metric of each experiment; in brackets its ratio to the first row.") +
-        "<table class=\"wide\"><tr><th>choice</th>";
-    for (const ExperimentOutcome* o : list)
-        html += fmt::format("<th>{}: {}</th>", o->experiment.name, o->experiment.metrics.front().name);
-    html += "</tr>\n";
-    for (const VariantSpec& variant : list.front()->experiment.variants) {
-        html += fmt::format("<tr><td>{}</td>", html_escaped(variant.name));
-        for (const ExperimentOutcome* o : list) {
-            const std::string& metric = o->experiment.metrics.front().name;
-            const auto found = std::ranges::find_if(o->series, [&](const ValueSeries& s) {
-                return s.variant == variant.name && s.metric == metric;
-            });
-            if (found == o->series.end()) {
-                html += "<td></td>";
-                continue;
-            }
-            const Estimate& base = o->of(o->experiment.variants.front().name, metric).y.front();
-            html += fmt::format("<td class=\"n\">{} ({:.3f})</td>", table_value(found->y.front()),
-                                found->y.front().value / base.value);
-        }
-        html += "</tr>\n";
-    }
-    return html + "</table>\n";
-}
-
 std::string experiment_section(const ExperimentOutcome& o) {
     const Experiment& e = o.experiment;
     return fmt::format("<h2 id=\"{}\">{}</h2>\n", e.name, html_escaped(e.title)) + html_paragraph(e.shows) +
@@ -214,7 +191,7 @@ std::string validation_page(const Validation& v) {
             "{}{} runs, {:.0f} s of computing in all, {} at a time; this time {} of them in {:.0f} s. ",
             v.quick ? "Quick subset: " : "", runs, work, v.jobs, v.computed, v.seconds) +
         std::string(how_to_read));
-    html += overview(v) + choices(v);
+    html += overview(v) + choice_table(v);
     for (const ExperimentOutcome& o : v.experiments) html += experiment_section(o);
     return html_page("Ruche against the paper's experiments", html);
 }

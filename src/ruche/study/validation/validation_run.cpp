@@ -9,21 +9,18 @@
 
 #include "ruche/core/document.hpp"
 #include "ruche/core/table_reader.hpp"
-#include "ruche/output/metrics.hpp"
 #include "ruche/output/picture.hpp"
 #include "ruche/scene/read_scene.hpp"
 #include "ruche/scene/simulate.hpp"
 #include "ruche/scene/write_scene.hpp"
-#include "ruche/study/calibration/moduli.hpp"
-#include "ruche/study/calibration/pull.hpp"
-#include "ruche/study/validation/sheet_measures.hpp"
+#include "ruche/study/validation/run_measures.hpp"
 
 namespace ruche {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view of_pull = "pull.";
+bool is_of_sample(const std::string& path) { return path.starts_with("pull.") || path.starts_with("hang."); }
 
 /// FNV-1a, 64 bits: a name for a text, not a protection against anybody.
 class TextKey {
@@ -52,6 +49,7 @@ std::string key_of(const ValidationRun& run, const Experiment& experiment, const
         if (fs::is_regular_file(path)) key.add(read_file(path, "drawing", 1U << 30U));
     }
     if (run.pull) add_fields(key, *run.pull);
+    if (run.hang) add_fields(key, *run.hang);
     for (const MetricSpec& metric : experiment.metrics) add_fields(key, metric);
     key.add(run.picture_title);
     return key.hex();
@@ -65,12 +63,14 @@ void scale(MeshOptions& mesh, double factor) {
     mesh.elements_across /= factor;
 }
 
-ClampedSample changed(ClampedSample sample, const std::vector<Override>& changes) {
+/// A sample with the values that `changes` give to its table.
+template <class Sample>
+Sample changed(Sample sample, const char* name, const std::vector<Override>& changes) {
     Node root;
     apply_overrides(root, changes);
     TableReader reader(root, "");
-    if (const Node* node = reader.take_table("pull")) {
-        TableReader table(*node, "pull");
+    if (const Node* node = reader.take_table(name)) {
+        TableReader table(*node, name);
         table.read(sample);
         table.finish();
     }
@@ -83,7 +83,7 @@ ValidationRun planned(const Experiment& e, const RunPlace& place) {
     std::vector<Override> of_sample;
     const auto change = [&](const std::string& text) {
         const Override o = parse_override(text);
-        (o.path.starts_with(of_pull) ? of_sample : of_scene).push_back(o);
+        (is_of_sample(o.path) ? of_sample : of_scene).push_back(o);
     };
     for (const std::string& text : variant.set) change(text);
     if (!e.sweep.key.empty()) change(fmt::format("{}={}", e.sweep.key, place.at));
@@ -93,8 +93,13 @@ ValidationRun planned(const Experiment& e, const RunPlace& place) {
     ValidationRun run{.place = place, .scene = read_scene(file, of_scene)};
     run.scene.solver.threads = 0;  // how many there are is the caller's business
     if (e.pull) {
-        run.pull = changed(*e.pull, of_sample);
+        run.pull = changed(*e.pull, "pull", of_sample);
         run.pull->element_size_mm *= place.mesh;
+    } else if (e.hang) {
+        run.hang = changed(*e.hang, "hang", of_sample);
+        run.hang->columns = static_cast<int>(std::lround(run.hang->columns / place.mesh));
+    }
+    if (run.pull || run.hang) {
         run.command = fmt::format("ruche validate {}", e.name);
         return run;
     }
@@ -107,72 +112,14 @@ ValidationRun planned(const Experiment& e, const RunPlace& place) {
     return run;
 }
 
-double mean_strip_curvature(const Result& result, const MetricSpec& metric) {
-    const std::vector<StripMetrics> strips =
-        metric.middle < 1.0 ? measure_strips(with_middles(result.layout, metric.middle), result.shape)
-                            : measure_strips(result.layout, result.shape);
-    double sum = 0.0;
-    const std::vector<int> chosen = chosen_strips(result.layout, metric.strips, metric.interior);
-    for (const int s : chosen) sum += strips[static_cast<std::size_t>(s)].curvature;
-    return sum / static_cast<double>(chosen.size());  // NaN when there is none
-}
-
-double bimetal(const Scene& scene) {
-    const bool front = scene.plastic.side == Side::front;
-    const double thickness = scene.plastic.thickness_mm * (front ? 1.0 : scene.plastic.back_thickness_factor);
-    const double curvature = strip_curvature(scene.material, scene.fabric.prestretch[0], thickness);
-    return front ? curvature : -curvature;
-}
-
-double value_of(const MetricSpec& metric, const Result& result) {
-    const LayoutRing ring{
-        .middle = Vec2(metric.at_mm[0], metric.at_mm[1]), .inner = metric.inner_mm, .outer = metric.outer_mm};
-    switch (metric.of) {
-        case Measure::strip_curvature:
-            return mean_strip_curvature(result, metric);
-        case Measure::silhouette_curvature:
-            return std::copysign(silhouette_curvature(result.layout, result.shape, metric.interior),
-                                 mean_strip_curvature(result, metric));
-        case Measure::transverse_stretch:
-            return transverse_stretch(result.layout, result.shape, ring);
-        case Measure::gauss_curvature:
-            return integrated_curvature(result.layout, result.shape, ring).gauss;
-        case Measure::mean_curvature:
-            return integrated_curvature(result.layout, result.shape, ring).mean;
-        case Measure::energy:
-            return result.equilibrium.energy.total();
-        case Measure::bimetal_curvature:
-            return bimetal(result.scene);
-        case Measure::clamped_force:
-        case Measure::law_force:
-            break;
-    }
-    return std::numeric_limits<double>::quiet_NaN();  // of a clamped sample only
-}
-
-RunOutcome pulled(const ValidationRun& run, const Experiment& experiment) {
-    std::vector<double> strains;
-    for (const MetricSpec& metric : experiment.metrics)
-        if (metric.of == Measure::clamped_force) strains.push_back(metric.strain);
-    const Material& material = run.scene.material;
-    const ClampedResponse response = simulate_clamped(*run.pull, material, strains);
-    RunOutcome outcome{.certain = response.converged};
-    std::size_t next = 0;
-    for (const MetricSpec& metric : experiment.metrics) {
-        if (metric.of == Measure::clamped_force) {
-            outcome.values[metric.name] = response.force_N[next++];
-        } else if (metric.of == Measure::law_force) {
-            const double stretch = 1.0 + metric.strain;
-            const double stress = Pull(material, FabricLaw::Options{}, run.pull->angle_deg)
-                                      .at(green_strain(stretch), false)
-                                      .stress;
-            outcome.values[metric.name] = stress * stretch * run.pull->width_mm * material.fabric_thickness;
-        }
-    }
-    return outcome;
-}
-
 }  // namespace
+
+/// Those metrics that are told as shares of another one.
+static void divide(std::map<std::string, double>& values, const std::vector<MetricSpec>& metrics) {
+    const std::map<std::string, double> whole = values;
+    for (const MetricSpec& metric : metrics)
+        if (!metric.over.empty()) values.at(metric.name) /= whole.at(metric.over);
+}
 
 std::vector<ValidationRun> expand(const Experiment& e, bool quick, const std::string& program) {
     const std::vector<double>& meshes = quick ? e.quick_meshes : e.meshes;
@@ -203,7 +150,9 @@ std::optional<RunOutcome> compute(const ValidationRun& run, const Experiment& ex
     const auto begin = Control::Clock::now();
     RunOutcome outcome;
     if (run.pull) {
-        outcome = pulled(run, experiment);
+        outcome = pull_sample(run, experiment);
+    } else if (run.hang) {
+        outcome = hang_sample(run, experiment);
     } else {
         const Result result = simulate(run.scene, control);
         const Equilibrium& end = result.equilibrium;
@@ -213,11 +162,12 @@ std::optional<RunOutcome> compute(const ValidationRun& run, const Experiment& ex
         outcome.warnings = result.warnings;
         outcome.triangles = result.layout.mesh.triangle_count();
         for (const MetricSpec& metric : experiment.metrics)
-            outcome.values[metric.name] = value_of(metric, result);
+            outcome.values[metric.name] = measured(metric, result);
         if (!run.picture_title.empty())
             outcome.picture =
                 to_png(draw_picture(result, {.width_px = 960, .height_px = 480, .title = run.picture_title}));
     }
+    divide(outcome.values, experiment.metrics);
     outcome.seconds = std::chrono::duration<double>(Control::Clock::now() - begin).count();
     return outcome;
 }

@@ -20,11 +20,12 @@ struct RunPlace {
     auto operator<=>(const RunPlace&) const = default;
 };
 
-/// A release (or a pull) that is to be computed.
+/// A release (or a sample that is pulled or hangs) that is to be computed.
 struct ValidationRun {
     RunPlace place;
     Scene scene;
     std::optional<ClampedSample> pull;
+    std::optional<CantileverSample> hang;
     std::string picture_title;  ///< empty: no picture of it
     std::string command;        ///< that repeats it
     std::string key;            ///< of what it depends on, the program included: 16 hexadecimal digits
