@@ -55,6 +55,15 @@ std::vector<Correlation> strong_correlations(const LawProblem& law, const LeastS
     return strong;
 }
 
+std::vector<CurveBand> bands(const LawProblem& law, const LeastSquaresFit& fit, double correlation) {
+    const Covariance c = covariance(law.problem(), fit);
+    const Eigen::VectorXd half = std::sqrt(profile_threshold(law, correlation)) * c.deviation;
+    const Eigen::MatrixXd squared = half.asDiagonal() * c.correlation * half.asDiagonal();
+    std::vector<CurveBand> result;
+    for (std::size_t i = 0; i < law.curve_count(); ++i) result.push_back(law.band(fit, squared, i));
+    return result;
+}
+
 /// Rms over the curves of an orientation, of a fit in which it may have had no part.
 double error_of(const LawProblem& law, const LeastSquaresFit& fit, std::span<const LawCurve> curves,
                 double angle) {
@@ -110,6 +119,7 @@ LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options) {
     if (options.intervals) {
         result.parameters = estimate(law, fit, correlation);
         result.correlations = strong_correlations(law, fit);
+        result.bands = bands(law, fit, correlation);
         result.left_out = leave_out(law, fit, curves);
     } else {
         const Eigen::VectorXd half =

@@ -17,6 +17,7 @@ class LawProblem {
     Material material(const Eigen::VectorXd& p) const;
     std::size_t parameter(int index) const { return free_[static_cast<std::size_t>(index)]; }
     int parameter_count() const { return static_cast<int>(free_.size()); }
+    std::size_t curve_count() const { return rows_.size(); }
 
     /// Standard deviations of stress and transverse strain from the residuals of a fit.
     void weigh(const LeastSquaresFit& fit);
@@ -24,6 +25,8 @@ class LawProblem {
     double correlation(const LeastSquaresFit& fit) const;
     /// Rms of a curve's stress over its largest.
     double relative_rms(const LeastSquaresFit& fit, std::size_t curve) const;
+    /// What a matrix of squared half widths of the parameters means along a curve.
+    CurveBand band(const LeastSquaresFit& fit, const Eigen::MatrixXd& squared, std::size_t curve) const;
     /// Curves of an orientation get no weight.
     void leave_out(double angle_deg);
 
@@ -53,6 +56,13 @@ class LawProblem {
                                 Answer& answer);
     bool evaluate_curve(std::size_t index, const Material& m, Eigen::VectorXd& r, Eigen::MatrixXd* j) const;
     std::vector<double> block(const Eigen::VectorXd& r, int begin, int count, double scale) const;
+    /// One kind of rows (stresses or transverse strains): where they are, and in what the noise is alike.
+    struct Kind {
+        int Rows::*count;
+        double Rows::*deviation;
+        bool behind;  ///< the curve's stresses
+    };
+    void weigh(const LeastSquaresFit& fit, const Kind& kind, double floor);
 
     std::span<const LawCurve> curves_;
     LawFitOptions options_;
