@@ -131,7 +131,7 @@ def test_a_file_of_another_kind_is_refused_by_what_it_is(name, place, tmp_path):
     files = campaign_of(name, place)
     for path, bytes_or_text in files.items():
         (tmp_path / path).write_bytes(bytes_or_text if isinstance(bytes_or_text, bytes) else bytes_or_text.encode())
-    run = ruche("calibrate", "campaign.toml", "-o", "card.toml", cwd=tmp_path)
+    run = ruche("calibrate", "campaign.toml", "-o", "card.toml", "--quiet", cwd=tmp_path)
     assert run.returncode == 2, run.stderr
     assert run.stderr.startswith("error: ") and run.stderr.count("error: ") == 1
     assert place in run.stderr and (as_test if place == "raw.csv" else as_campaign) in run.stderr, run.stderr

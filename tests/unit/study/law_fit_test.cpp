@@ -140,8 +140,9 @@ TEST_CASE("alpha from alpha~: undoes its definition") {
 }
 
 TEST_CASE(
-    "joint fit: noise of one per cent leaves the truth inside nearly all intervals, and the curves within "
-    "one per cent") {
+    "joint fit: noise of one per cent leaves the truth inside nearly all intervals, and the curves near "
+    "their "
+    "bands") {
     const Material truth;
     int inside = 0;
     int count = 0;
@@ -157,12 +158,13 @@ TEST_CASE(
             ++count;
         }
         CHECK(fit.independent_share > 0.7);
-        for (const double angle : seven_angles) {
-            const LawCurve exact = exact_curve(truth, angle);
+        // A band is 1.96 standard deviations wide; twice that is left once in 10,000 times.
+        for (std::size_t k = 0; k < curves.size(); ++k) {
+            const LawCurve exact = exact_curve(truth, curves[k].angle_deg);
             const LawPrediction found = predict(fit.material, exact);
             for (std::size_t i = 0; i < exact.stretch.size(); ++i)
                 CHECK(std::abs(found.nominal_stress[i] - exact.nominal_stress[i]) <
-                      0.01 * exact.nominal_stress.front());
+                      2.0 * fit.bands[k].over_full_scale * exact.nominal_stress.front());
         }
     }
     // 32 intervals of 95 %: fewer than 26 inside has a probability below 0.2 %.
@@ -261,6 +263,7 @@ TEST_CASE("joint fit: cycles that miss the law in the same way do not make it su
             }
             add_noise(curve, 0.002,
                       static_cast<std::uint64_t>(100 * cycles) + static_cast<std::uint64_t>(angle));
+            curve.transverse.clear();  // widths that miss nothing would be surer with every cycle
             curves.push_back(curve);
         }
         return fit_law(curves, {.start = truth, .intervals = false});
