@@ -11,8 +11,13 @@
 namespace ruche {
 namespace {
 
-LeastSquaresFit fit_with_weights(LawProblem& law, const Eigen::VectorXd& start) {
-    LeastSquaresFit fit = minimise(law.problem(), start);
+LeastSquaresFit fit_with_weights(LawProblem& law) {
+    LeastSquaresFit fit;
+    for (const Eigen::VectorXd& start : law.starts()) {
+        LeastSquaresFit other = minimise(law.problem(), start);
+        const bool better = other.converged && (!fit.converged || other.sum_of_squares < fit.sum_of_squares);
+        if (fit.p.size() == 0 || better) fit = std::move(other);
+    }
     for (int round = 0; round < 2; ++round) {
         law.weigh(fit);
         fit = minimise(law.problem(), fit.p);
@@ -113,7 +118,7 @@ LawPrediction predict(const Material& material, const LawCurve& curve) {
 
 LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options) {
     LawProblem law(curves, options);
-    LeastSquaresFit fit = fit_with_weights(law, law.start());
+    LeastSquaresFit fit = fit_with_weights(law);
     const double correlation = law.correlation(fit);
     LawFit result;
     if (options.intervals) {

@@ -76,10 +76,8 @@ LawProblem::LawProblem(std::span<const LawCurve> curves, const LawFitOptions& op
     };
 }
 
-Eigen::VectorXd LawProblem::start() const {
-    Material m = options_.start;
-    const double nu = options_.fit_poisson ? 0.3 : m.fabric_poissons_ratio;
-    m.fabric_poissons_ratio = nu;
+std::vector<Eigen::VectorXd> LawProblem::starts() const {
+    std::array<AxisFit, 2> fitted, shared;
     for (int axis = 0; axis < 2; ++axis) {
         const LawCurve& curve = nearest(curves_, axis);
         std::vector<double> green, stress;
@@ -87,11 +85,25 @@ Eigen::VectorXd LawProblem::start() const {
             green.push_back(green_strain(curve.stretch[i]));
             stress.push_back(curve.nominal_stress[i] / curve.stretch[i]);
         }
-        const AxisFit fit = fit_axis(green, stress);
         const auto k = static_cast<std::size_t>(axis);
-        m.*law_parameters[alpha_1 + k] = std::max(fit.alpha, 0.02 * fit.beta);
-        m.*law_parameters[beta_1 + k] = fit.beta;
-        m.*law_parameters[gamma_1 + k] = fit.gamma;
+        fitted[k] = fit_axis(green, stress);
+        // Near rest S = (alpha~ + beta/gamma) E: a half each, with a quarter of the secant up to the end, to
+        // which the locking adds much.
+        const double reached = *std::max_element(green.begin(), green.end());
+        const double secant = *std::max_element(stress.begin(), stress.end()) / reached;
+        shared[k] = {.alpha = 0.25 * secant, .beta = 0.25 * secant * reached, .gamma = 1.03 * reached};
+    }
+    return {start(fitted), start(shared)};
+}
+
+Eigen::VectorXd LawProblem::start(const std::array<AxisFit, 2>& axes) const {
+    Material m = options_.start;
+    const double nu = options_.fit_poisson ? 0.3 : m.fabric_poissons_ratio;
+    m.fabric_poissons_ratio = nu;
+    for (std::size_t k = 0; k < 2; ++k) {
+        m.*law_parameters[alpha_1 + k] = std::max(axes[k].alpha, 0.02 * axes[k].beta);
+        m.*law_parameters[beta_1 + k] = axes[k].beta;
+        m.*law_parameters[gamma_1 + k] = axes[k].gamma;
     }
     m.alpha_3 = std::sqrt(m.alpha_1 * m.alpha_2) / (1.0 + nu);
     Eigen::VectorXd p(free_.size());

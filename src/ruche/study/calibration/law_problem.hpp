@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "ruche/study/calibration/law_fit.hpp"
 #include "ruche/study/calibration/least_squares.hpp"
 
@@ -13,7 +15,9 @@ class LawProblem {
     LawProblem& operator=(const LawProblem&) = delete;
 
     const LeastSquares& problem() const { return problem_; }
-    Eigen::VectorXd start() const;
+    /// Where a fit may begin: at what each axis says by itself, and where the straight and the locking part
+    /// of the law share an axis's stiffness. Few noisy readings can lead from either into a local minimum.
+    std::vector<Eigen::VectorXd> starts() const;
     Material material(const Eigen::VectorXd& p) const;
     std::size_t parameter(int index) const { return free_[static_cast<std::size_t>(index)]; }
     int parameter_count() const { return static_cast<int>(free_.size()); }
@@ -43,6 +47,8 @@ class LawProblem {
     };
 
     bool evaluate(const Eigen::VectorXd& p, Eigen::VectorXd& r, Eigen::MatrixXd* jacobian) const;
+    /// The free parameters, within their bounds, for the axes' alpha~, beta and gamma.
+    Eigen::VectorXd start(const std::array<AxisFit, 2>& axes) const;
     /// The law's answer to a row: residual (MPa) and, per parameter, its derivatives; false where it has
     /// none.
     struct Answer {
