@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""How long wrong input holds anybody up: processor time of every case of tests/pytest/bad_input_test.py.
+"""How long wrong input holds anybody up: processor time of every case of tests/pytest/bad_input_test.py, and of files of
+other kinds given to `ruche calibrate` (tests/pytest/calibrate_test.py).
 
 usage: bench/bad_input_times.py [--build build/release]
 
@@ -33,15 +34,21 @@ def main():
     os.environ |= {"RUCHE_PROGRAM": str(program), "RUCHE_SOURCE": str(ROOT)}
     sys.path.insert(0, str(ROOT / "tests/pytest"))
     from bad_input_test import CASES
+    from calibrate_test import OTHER_FILES, campaign_of
 
+    commands = {name: (files, ["simulate", *arguments, "-o", "out"]) for name, (files, arguments, _) in CASES.items()}
+    for name in OTHER_FILES:
+        for place in ("raw.csv", "campaign.toml"):
+            calibrate = ["calibrate", "campaign.toml", "-o", "card.toml"]
+            commands[f"{name} as {place}"] = (campaign_of(name, place), calibrate)
     times = {}
-    for name, (files, arguments, _) in CASES.items():
+    for name, (files, arguments) in commands.items():
         with tempfile.TemporaryDirectory() as folder:
             for path, content in files.items():
                 target = Path(folder, path)
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(content if isinstance(content, bytes) else content.encode("utf-8"))
-            times[name] = processor_seconds([program, "simulate", *arguments, "-o", "out"], folder)
+            times[name] = processor_seconds([program, *arguments], folder)
     slowest = sorted(times, key=times.get, reverse=True)
     print(f"{len(times)} wrong inputs, processor seconds; ruche --version: {processor_seconds([program, '--version'], '/'):.3f}")
     for name in slowest[:5]:

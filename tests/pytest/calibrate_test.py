@@ -18,6 +18,37 @@ TRUTH = {
 }  # fmt: skip
 
 
+SVG = '<?xml version="1.0"?>\n<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"><path d="M 1 1 H 8"/></svg>\n'
+PDF = b"%PDF-1.4\n%\xe2\xe3\xcf\xd3\n1 0 obj <</Type /Catalog>> endobj\nxref\n" + b"".join(
+    b"%010d 00000 n\n" % (17 * i) for i in range(40)
+)
+# What people take for the readings, or for the campaign: text, bytes or what makes them, and what is said in either place.
+OTHER_FILES = {
+    "a drawing": (SVG, "is an XML or SVG file, expected a table as text", "campaign.toml:1: not valid TOML"),
+    "a page": ("<!DOCTYPE html>\n<html><body>1,2</body></html>\n", "is an HTML or XML file", "campaign.toml:1: not valid TOML"),
+    "a picture": (b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR" + bytes(range(256)), "is a picture (PNG)", "is not UTF-8 text"),
+    "a photograph": (b"\xff\xd8\xff\xe0\0\x10JFIF" + bytes(range(256)), "is a picture (JPEG)", "is not UTF-8 text"),
+    "a report": (PDF, "is a PDF, expected a table as text", "campaign.toml:2: byte 0xE2 is not UTF-8 text"),
+    "a spreadsheet": (b"PK\x03\x04\x14\0\6\0" + bytes(99), "is a spreadsheet (xlsx, ods)", "campaign.toml"),
+    "an old spreadsheet": (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(99), "is an old spreadsheet", "is not UTF-8 text"),
+    "bytes": (bytes(range(256)) * 40, "is a binary file", "campaign.toml"),
+    "nothing": ("", "raw.csv: is empty", "has neither [[tension]] nor [[printed]]"),
+    "a letter": ("Dear Sir,\nthe knit was soft.\n", "has no table of numbers", "campaign.toml:1: not valid TOML"),
+    "200 MB of readings": (lambda: b"time_s,displacement_mm,force_N\n" + b"0.1,1.5,2.5\n" * (200 * 2**20 // 12),
+                           "5 to 50 readings a second are plenty", "is longer than 4 MB"),
+}  # fmt: skip
+
+
+def campaign_of(name, place):
+    """A campaign of one test, with one of OTHER_FILES in place of the test's file or of the campaign itself."""
+    content = OTHER_FILES[name][0]
+    content = content() if callable(content) else content
+    if place == "campaign.toml":
+        return {place: content}
+    test = '[[tension]]\nfile = "raw.csv"\nangle_deg = 0\nlength_mm = 110\nwidth_mm = 20\n'
+    return {"campaign.toml": test, place: content}
+
+
 def ruche(*arguments, cwd, **more):
     return subprocess.run([RUCHE, *arguments], cwd=cwd, capture_output=True, text=True, timeout=600, **more)
 
@@ -91,3 +122,19 @@ def test_decimal_commas_of_the_locale_change_nothing(finished, german, tmp_path)
     plain = ruche("calibrate", EXAMPLE / "campaign.toml", "-o", "plain.toml", "--mode", "paper", cwd=tmp_path)
     assert plain.returncode == 0
     assert (tmp_path / "card.toml").read_text() == (tmp_path / "plain.toml").read_text()
+
+
+@pytest.mark.parametrize("place", ["raw.csv", "campaign.toml"])
+@pytest.mark.parametrize("name", OTHER_FILES)
+def test_a_file_of_another_kind_is_refused_by_what_it_is(name, place, tmp_path):
+    _, as_test, as_campaign = OTHER_FILES[name]
+    files = campaign_of(name, place)
+    for path, bytes_or_text in files.items():
+        (tmp_path / path).write_bytes(bytes_or_text if isinstance(bytes_or_text, bytes) else bytes_or_text.encode())
+    run = ruche("calibrate", "campaign.toml", "-o", "card.toml", "--quiet", cwd=tmp_path)
+    assert run.returncode == 2, run.stderr
+    assert run.stderr.startswith("error: ") and run.stderr.count("error: ") == 1
+    assert place in run.stderr and (as_test if place == "raw.csv" else as_campaign) in run.stderr, run.stderr
+    assert len(run.stderr.splitlines()) <= 4 and len(run.stderr) < 600
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(files)
+    (tmp_path / place).unlink()  # it may be large, and pytest keeps the folder

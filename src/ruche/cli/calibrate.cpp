@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 
@@ -34,6 +35,14 @@ static void print_card(const Calibration& result) {
             const std::string source = value.source.substr(0, value.source.find(';'));
             fmt::print("  {:30} {:>12.6g}  {:26} {}\n", field.key, value.value, interval, source);
         }
+    }
+    for (const CalibratedSet& set : result.sets) {
+        double widest = 0.0;
+        for (const CurveBand& band : set.fit.bands) widest = std::max(widest, band.over_full_scale);
+        if (widest > 0.0)
+            fmt::print(
+                "the readings determine the curves at a pre-stretch of {:g} within {:.2g} % of full scale\n",
+                set.prestretch, 100.0 * widest);
     }
     for (const std::string& warning : result.warnings) fmt::print("warning: {}\n", warning);
 }

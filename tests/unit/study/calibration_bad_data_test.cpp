@@ -144,7 +144,20 @@ const Case cases[] = {
      [](Sound& s) { s.first_test = "file = \"0.csv\"\nangle_deg = 0\nlength_mm = 110\n"; },
      "tension.1.width_mm: missing"},
     {"a misspelt key", [](Sound& s) { s.first_test += "widht_mm = 20\n"; }, "did you mean width_mm?"},
-    {"a spreadsheet", [](Sound& s) { s.first = std::string("PK\x03\x04\0\0\0\0", 8); }, "is a binary file"},
+    {"a spreadsheet", [](Sound& s) { s.first = std::string("PK\x03\x04\0\0\0\0", 8); },
+     "0.csv: is a spreadsheet (xlsx, ods) or a zip file"},
+    {"a drawing", [](Sound& s) { s.first = "<?xml version=\"1.0\"?>\n<svg width=\"9\" height=\"9\"/>\n"; },
+     "0.csv: is an XML or SVG file, expected a table as text"},
+    {"a picture", [](Sound& s) { s.first = std::string("\x89PNG\r\n\x1A\n\0\0\0\rIHDR", 16); },
+     "0.csv: is a picture (PNG)"},
+    {"a report as PDF, whose last page looks like a table",
+     [](Sound& s) {
+         s.first = "%PDF-1.4\nxref\n";
+         for (int i = 0; i < 20; ++i) s.first += fmt::format("{:010} 00000 n\n", 17 * i);
+     },
+     "0.csv: is a PDF"},
+    {"bytes", [](Sound& s) { s.first = std::string("ab\0\1\0\0\2cdefghijklmn", 18); },
+     "0.csv: is a binary file"},
     {"names that nobody knows", [](Sound& s) { s.first.replace(0, s.first.find('\n'), "A,B,C,D"); },
      "no column of the force was found"},
     {"a column that is not there", [](Sound& s) { s.first_test += "columns = { force = \"Lod (N)\" }\n"; },

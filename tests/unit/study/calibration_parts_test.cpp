@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "ruche/study/calibration/bending_fit.hpp"
 #include "ruche/study/calibration/cycles.hpp"
@@ -47,6 +48,20 @@ TEST_CASE("cycles: triangles are counted, with noise on the displacement too") {
         }
         CHECK(cycles[2].end == record.size());
     }
+}
+
+TEST_CASE("cycles: a hold at the top belongs to the loading, one at the bottom to the loading that follows") {
+    TestRecord record;
+    for (const double d : {0, 5, 10, 10, 10, 5, 0, 0, 0, 5, 10, 5, 0}) record.displacement.push_back(d);
+    record.force = record.displacement;
+    const std::vector<Cycle> cycles = find_cycles(record);
+    REQUIRE(cycles.size() == 2);
+    CHECK(cycles[0].peak == 4);
+    CHECK(cycles[0].end == 7);
+    CHECK(cycles[1].begin == 6);
+    CHECK(cycles[1].peak == 10);
+    CHECK(cycles[1].rows(Branch::loading).size() == 5);
+    CHECK(cycles[1].rows(Branch::unloading).begin == 11);
 }
 
 TEST_CASE("cycles: a test that only loads has none that unloads") {
@@ -180,9 +195,46 @@ TEST_CASE("statistics: line, noise and resemblance of neighbours") {
     CHECK(line.intercept == doctest::Approx(3.0).epsilon(1e-9));
     CHECK(correlation_length(std::array{slow}) > 20.0);
     CHECK(correlation_length(std::array{white}) < 1.5);
-    CHECK(noise_variance(white) == doctest::Approx(1.0 / 12.0).epsilon(0.15));
-    CHECK(noise_variance(slow) < 1e-3);
+    CHECK(noise_variance(white).value == doctest::Approx(1.0 / 12.0).epsilon(0.15));
+    CHECK(noise_variance(slow).value < 1e-3);
     CHECK(student_t(0.95, 10) == doctest::Approx(2.228138852).epsilon(1e-8));
+}
+
+TEST_CASE("statistics: the noise of neighbours is known as well as its freedom says") {
+    // Mean and variance of the estimate over many short series of white noise of variance 1.
+    std::mt19937_64 generator(3);
+    std::normal_distribution<double> normal;
+    std::vector<double> found;
+    double freedom = 0.0;
+    for (int k = 0; k < 4000; ++k) {
+        std::vector<double> white(8);
+        for (double& v : white) v = normal(generator);
+        const Variance variance = noise_variance(white);
+        found.push_back(variance.value);
+        freedom = variance.freedom;
+    }
+    const Spread s = spread(found);
+    // Standard errors of 4000 values: 0.9 % of the mean, and some 4 % of the variance 2/freedom.
+    CHECK(s.mean == doctest::Approx(1.0).epsilon(0.03));
+    CHECK(s.deviation * s.deviation == doctest::Approx(2.0 / freedom).epsilon(0.15));
+}
+
+TEST_CASE("moderated variances: what chance explains becomes one, what it does not stays apart") {
+    const std::vector<Variance> few = {{0.7, 5.0}, {1.6, 5.0}, {1.1, 5.0}, {0.5, 5.0}};
+    for (const double v : moderated(few)) CHECK(v == doctest::Approx(0.975).epsilon(1e-12));
+    // Variances that are known well, and a hundredfold apart, move by less than a per cent.
+    const std::vector<Variance> apart = {{0.1, 400.0}, {10.0, 400.0}, {1.0, 400.0}};
+    const std::vector<double> kept = moderated(apart);
+    for (std::size_t i = 0; i < apart.size(); ++i)
+        CHECK(kept[i] == doctest::Approx(apart[i].value).epsilon(0.01));
+    // Between: towards the middle, in the same order.
+    const std::vector<double> drawn = moderated(std::vector<Variance>{{0.1, 5.0}, {10.0, 5.0}, {1.0, 5.0}});
+    CHECK(drawn[0] > 0.1);
+    CHECK(drawn[1] < 10.0);
+    CHECK(drawn[0] < drawn[2]);
+    CHECK(drawn[2] < drawn[1]);
+    CHECK(moderated(std::vector<Variance>{{0.0, 5.0}, {2.0, 5.0}}) == std::vector<double>{0.0, 2.0});
+    CHECK(moderated(std::vector<Variance>{{3.0, 5.0}}) == std::vector<double>{3.0});
 }
 
 TEST_CASE("interpolation: reproduces a polynomial through its nodes") {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "machine_exports.hpp"
 #include "ruche/study/calibration/calibration.hpp"
 #include "synthetic_tests.hpp"
 
@@ -15,72 +16,9 @@ using namespace ruche::test;
 
 namespace {
 
-constexpr double length = 110.0;
-constexpr double width = 20.0;
-
-struct Reading {
-    double time, displacement, force, width;  // s, mm, N, mm
-};
-using Test = std::vector<Reading>;
-
-/// Cycles of loading, a tenth stiffer, and of unloading as the law says.
-Test test_of(int cycles, int rows = 60) {
-    const Material material;
-    const LawCurve curve = exact_curve(material, 0.0, 1.7, rows);
-    Test test;
-    const auto read = [&](std::size_t i, double factor) {
-        test.push_back({0.2 * static_cast<double>(test.size()), length * (curve.stretch[i] - 1.0),
-                        factor * curve.nominal_stress[i] * width * material.fabric_thickness,
-                        width * stretch_of(curve.transverse[i])});
-    };
-    for (int cycle = 0; cycle < cycles; ++cycle) {
-        for (std::size_t i = curve.stretch.size(); i-- > 1;) read(i, 1.1);
-        for (std::size_t i = 0; i < curve.stretch.size(); ++i) read(i, 1.0);
-    }
-    return test;
-}
-
-std::string replaced(std::string text, char what, char by) {
-    std::replace(text.begin(), text.end(), what, by);
-    return text;
-}
-
-/// A line for each reading.
-std::string rows_of(const Test& test, const std::function<std::string(const Reading&)>& row) {
-    std::string text;
-    for (const Reading& r : test) text += row(r);
-    return text;
-}
-
-std::string plain_row(const Reading& r) {
-    return fmt::format("{:.2f},{:.5f},{:.6f}\n", r.time, r.displacement, r.force);
-}
-std::string quoted_row(const Reading& r) {
-    return fmt::format("\"{:.5f}\",\"{:.5f}\",\"{:.5f}\"\r\n", r.time, r.displacement, r.force);
-}
-std::string german_row(const Reading& r) {
-    return replaced(fmt::format("{:.2f};{:.5f};{:.5f};{:.4f}\r\n", r.time, r.force, r.displacement, r.width),
-                    '.', ',');
-}
-
-/// Every number of the test times a factor, or so.
-Test changed(Test test, const std::function<void(Reading&)>& change) {
-    for (Reading& r : test) change(r);
-    return test;
-}
-
-const std::string bluehill_names = "\"Time\",\"Extension\",\"Load\"\r\n\"(s)\",\"(mm)\",\"(N)\"\r\n";
 const std::string zwick_names =
     "Pr\xFC"
     "fzeit;Standardkraft;Standardweg;Breite\r\ns;N;mm;mm\r\n";
-
-struct Export {
-    std::string name;
-    std::string bytes;
-    std::string more;  ///< of its [[tension]]
-    std::string
-        trouble;  ///< what is wrong: in the error, or "warning: " and what the card keeps; empty: nothing
-};
 
 std::string several(const std::string& head, const Test& first, const Test& second,
                     const std::function<std::string(const Reading&)>& row) {
@@ -236,7 +174,7 @@ std::vector<Export> exports() {
                                                           [](const Reading& r) {
                                                               return fmt::format(
                                                                   "{:.2f},{:.7f},{:.6f}\n", r.time,
-                                                                  r.displacement / length, r.force);
+                                                                  r.displacement / sample_length, r.force);
                                                           }),
                    "", "\"Strain\" has no unit"});
     all.push_back({"strain as a ratio, said to be",
@@ -244,16 +182,17 @@ std::vector<Export> exports() {
                                                           [](const Reading& r) {
                                                               return fmt::format(
                                                                   "{:.2f},{:.7f},{:.6f}\n", r.time,
-                                                                  r.displacement / length, r.force);
+                                                                  r.displacement / sample_length, r.force);
                                                           }),
                    "columns = { displacement_unit = \"mm/mm\" }\n", ""});
     const std::string names = "Time (s),Extension (mm),Load (N)\n";
     all.push_back({"tension negative",
                    names + rows_of(changed(test, [](Reading& r) { r.force = -r.force; }), plain_row), "",
                    "warning: its sign was turned"});
-    all.push_back({"the distance between the grips in place of a displacement",
-                   names + rows_of(changed(test, [](Reading& r) { r.displacement += length; }), plain_row),
-                   "", "warning: taken for the distance between the grips"});
+    all.push_back(
+        {"the distance between the grips in place of a displacement",
+         names + rows_of(changed(test, [](Reading& r) { r.displacement += sample_length; }), plain_row), "",
+         "warning: taken for the distance between the grips"});
     all.push_back(
         {"a crosshead that was not set to zero",
          names +
@@ -277,19 +216,23 @@ std::vector<Export> exports() {
                    "columns = { displacement = \"2\", force = \"3\", force_unit = \"N\", displacement_unit = "
                    "\"mm\" }\n",
                    ""});
+    for (Export& layout : other_layouts()) all.push_back(std::move(layout));
     return all;
 }
 
 /// Largest errors over full scale, against the unloading as it was.
 double error_of(const TensionCurve& curve) {
     const LawCurve exact = exact_curve(Material{}, 0.0, 1.7, 60);
-    // The row at the peak is the last of the loading.
-    REQUIRE(curve.stretch.size() + 1 == exact.stretch.size());
+    // The row at the peak is the last of the loading; all cycles are the same.
+    const std::size_t cycles = curve.cycles.size();
+    REQUIRE(curve.used.size() == cycles);
+    REQUIRE(curve.stretch.size() == cycles * (exact.stretch.size() - 1));
     double error = 0.0;
     for (std::size_t i = 0; i < curve.stretch.size(); ++i) {
-        error = std::max(error, std::abs(curve.stretch[i] - exact.stretch[i + 1]));
+        const std::size_t k = 1 + i / cycles;
+        error = std::max(error, std::abs(curve.stretch[i] - exact.stretch[k]));
         error = std::max(
-            error, std::abs(curve.nominal_stress[i] - exact.nominal_stress[i + 1]) / exact.nominal_stress[0]);
+            error, std::abs(curve.nominal_stress[i] - exact.nominal_stress[k]) / exact.nominal_stress[0]);
     }
     return error;
 }

@@ -57,16 +57,19 @@ std::string fit_table(const CalibratedSet& set) {
         std::string left_out;
         for (const LeftOutOrientation& l : set.fit.left_out)
             if (l.angle_deg == angle) left_out = fmt::format("{:.2f} %", 100.0 * l.error);
+        std::string band;
+        if (!set.fit.bands.empty())
+            band = fmt::format("{:.2f} % of the largest, {:.2f} % of itself",
+                               100.0 * set.fit.bands[i].over_full_scale, 100.0 * set.fit.bands[i].over_value);
         const double nu = set.poissons_ratios[i];
         rows += fmt::format(
-            "<tr><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.2f} %</td><td class=\"n\">{}</td>"
-            "<td class=\"n\">{}</td></tr>\n",
-            html_escaped(set.curves[i].name), set.tests[i].largest_stretch(), 100.0 * set.fit.rms[i],
-            left_out, std::isnan(nu) ? "" : fmt::format("{:.3f}", nu));
+            "<tr><td>{}</td><td>{}</td><td class=\"n\">{:.3f}</td><td class=\"n\">{:.2f} %</td>"
+            "<td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td></tr>\n",
+            html_escaped(set.curves[i].name), set.tests[i].used_cycles(), set.tests[i].largest_stretch(),
+            100.0 * set.fit.rms[i], band, left_out, std::isnan(nu) ? "" : fmt::format("{:.3f}", nu));
     }
-    return "<table><tr><th>test</th><th>up to stretch</th><th>rms of the fit</th><th>predicted by the "
-           "others</th>"
-           "<th>-E22/E11</th></tr>\n" +
+    return "<table><tr><th>test</th><th>fitted</th><th>up to stretch</th><th>rms of the fit</th>"
+           "<th>force known within (95 %)</th><th>predicted by the others</th><th>-E22/E11</th></tr>\n" +
            rows + "</table>\n";
 }
 
@@ -132,7 +135,8 @@ std::string files(const Calibration& c) {
         for (const TensionCurve& test : set.tests) {
             html += "<li>" + html_escaped(test.record.file) + "<br><small>";
             for (const std::string& column : test.record.columns) html += html_escaped(column) + "; ";
-            html += fmt::format("{} rows, {} cycles</small></li>\n", test.record.size(), test.cycles.size());
+            html += fmt::format("{} rows, {} of {} fitted</small></li>\n", test.record.size(),
+                                test.used_cycles(), test.cycles.size());
         }
     }
     return html + "</ul>\n";
@@ -153,9 +157,11 @@ std::string calibration_page(const Calibration& c) {
         const std::string at = fmt::format("Fabric at a pre-stretch of {:g}", set.prestretch);
         html += fmt::format("<h2>{}: the law</h2>\n{}<div class=\"plots\">\n{}</div>\n", at,
                             fit_text(set, c.campaign.options.mode), law_plots(set));
-        html +=
-            section(at + ": the tests", "Every recorded row; green is the branch that the law is fitted to.",
-                    cycle_plots(set));
+        html += section(
+            at + ": the tests",
+            "Every recorded row; green is what the law is fitted to: the last cycle, and those before "
+            "it that noise alone tells from it.",
+            cycle_plots(set));
     }
     html += section("Shear", "Lines are drawn over the range that counts as linear.", shear_plots(c));
     html += section("Bending", "A strip that hangs over by L; the curve is that of every elastic strip.",

@@ -39,26 +39,26 @@ std::string cycle_plots(const CalibratedSet& set) {
     std::string svg;
     for (const TensionCurve& test : set.tests) {
         const TestRecord& r = test.record;
-        PlotSeries used{
-            .label = test.test.branch == Branch::unloading ? "unloading branch used" : "loading branch used",
-            .colour = "#009e73",
-            .size = 2.2};
-        const Cycle& cycle = test.cycles[test.cycle];
-        const bool unloading = test.test.branch == Branch::unloading;
-        for (std::size_t i = unloading ? cycle.unloading() : cycle.begin;
-             i < (unloading ? cycle.end : cycle.peak + 1); ++i) {
-            used.x.push_back(r.displacement[i]);
-            used.y.push_back(r.force[i]);
+        Plot plot{.title = test.name(),
+                  .x_label = "displacement (mm)",
+                  .y_label = "force (N)",
+                  .series = {{.label = fmt::format("all {} cycles", test.cycles.size()),
+                              .colour = "#999999",
+                              .x = r.displacement,
+                              .y = r.force,
+                              .size = 1.0}}};
+        const char* const branch = test.test.branch == Branch::unloading ? "unloading" : "loading";
+        for (const std::size_t cycle : test.used) {
+            PlotSeries used{.colour = "#009e73", .size = 1.6};
+            if (cycle == test.used.front()) used.label = fmt::format("{}, {}", branch, test.used_cycles());
+            const RowRange rows = test.cycles[cycle].rows(test.test.branch);
+            for (std::size_t i = rows.begin; i < rows.end; ++i) {
+                used.x.push_back(r.displacement[i]);
+                used.y.push_back(r.force[i]);
+            }
+            plot.series.push_back(std::move(used));
         }
-        svg += svg_plot({.title = test.name(),
-                         .x_label = "displacement (mm)",
-                         .y_label = "force (N)",
-                         .series = {{.label = fmt::format("all {} cycles", test.cycles.size()),
-                                     .colour = "#999999",
-                                     .x = r.displacement,
-                                     .y = r.force,
-                                     .size = 1.0},
-                                    used}});
+        svg += svg_plot(plot);
     }
     return svg;
 }

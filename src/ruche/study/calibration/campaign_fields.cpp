@@ -89,7 +89,10 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
         {"grip_width_mm", &T::grip_width_mm, "mm", 0, most_mm,
          "Width of a dogbone at the clamps, when length_mm and the displacement are those of the clamps."},
         {"gauge_length_mm", &T::gauge_length_mm, "mm", 0, most_mm, "Length of such a dogbone's narrow part."},
-        {"cycle", &T::cycle, "", 0, 10000, "Which load-unload cycle, from 1; 0: the last complete one."},
+        {"cycle", &T::cycle, "", 0, 10000,
+         "Which load-unload cycle, from 1; 0: the last complete one, with those before it that cannot be "
+         "told "
+         "from it."},
         {"branch", choice<&T::branch>(branch_names), "", -infinity, infinity,
          "\"unloading\", as fabric on a frame is released, or \"loading\" where nothing else was measured."},
         {"rest_length", choice<&T::rest_length>(rest_lengths), "", -infinity, infinity,

@@ -174,6 +174,45 @@ bool are_names(std::vector<std::string> names) {
     return std::adjacent_find(names.begin(), names.end()) == names.end();
 }
 
+/// Names of columns: words, none of them twice.
+bool are_titles(const TextLine& line, const Dialect& dialect) {
+    if (line.numbers) return false;
+    std::vector<std::string> cells = split(line.text, dialect.delimiter);
+    std::erase_if(cells, [](const std::string& cell) { return cell.empty(); });
+    if (cells.size() < 2) return false;
+    const auto is_word = [&](const std::string& cell) {
+        return has_letter(cell) && std::isnan(cell_number(cell, dialect.decimal)) && !is_clock(cell);
+    };
+    if (!std::all_of(cells.begin(), cells.end(), is_word)) return false;
+    std::sort(cells.begin(), cells.end());
+    return std::adjacent_find(cells.begin(), cells.end()) == cells.end();
+}
+
+/// What stands below the readings: text, and results with names of their own or with a word in front
+/// ("Mean").
+void leave_results_out(Section& section, const std::vector<TextLine>& lines, const Dialect& dialect) {
+    const auto cells_of = [&](std::size_t i) { return split(lines[i].text, dialect.delimiter); };
+    const auto begins_with_number = [&](const std::vector<std::string>& cells) {
+        return !std::isnan(cell_number(cells.front(), dialect.decimal));
+    };
+    const bool first_is_number = begins_with_number(cells_of(section.first));
+    const auto is_no_reading = [&](std::size_t i) {
+        const std::vector<std::string> cells = cells_of(i);
+        if (!has_digit(lines[i].text)) return true;
+        if (!lines[i].numbers && cells.size() + 1 < dialect.columns) return true;
+        return first_is_number && has_letter(cells.front()) && !begins_with_number(cells);
+    };
+    std::size_t rows = 0;
+    for (std::size_t i = section.end; i > section.first + 1 && rows < fewest_rows; --i) {
+        if (are_titles(lines[i - 1], dialect)) {
+            section.end = i - 1;
+            rows = 0;
+        }
+        rows += lines[i - 1].numbers ? 1 : 0;
+    }
+    while (section.end > section.first + 1 && is_no_reading(section.end - 1)) --section.end;
+}
+
 std::vector<Section> sections_of(const std::vector<TextLine>& lines, const Dialect& dialect) {
     std::vector<Section> sections;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -192,8 +231,7 @@ std::vector<Section> sections_of(const std::vector<TextLine>& lines, const Diale
         }
         sections.push_back(std::move(next));
     }
-    for (Section& section : sections)
-        while (section.end > section.first + 1 && !has_digit(lines[section.end - 1].text)) --section.end;
+    for (Section& section : sections) leave_results_out(section, lines, dialect);
     // Tables of results beside those of the tests.
     std::size_t most = 0;
     for (const Section& section : sections) most = std::max(most, section.rows());

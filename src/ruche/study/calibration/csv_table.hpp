@@ -29,8 +29,9 @@ struct CsvTable {
 
 /// Finds delimiter, decimal mark, names and units. A table that begins anew below (its names again, or other
 /// names of force and displacement) is that of another specimen, unless its time goes on; a table of results,
-/// much shorter than the others, is none. `specimen`, from 1, says which; 0 where there is only one.
-/// Throws InputError when there is no table of at least two columns, or it is not clear which.
+/// much shorter than the others, is none, nor is what stands below the readings. `specimen`, from 1, says
+/// which; 0 where there is only one. Throws InputError when there is no table of at least two columns, or it
+/// is not clear which.
 CsvTable parse_csv(std::string_view bytes, const std::string& file, int specimen = 0);
 
 /// Reads a file, of at most 32 MB.

@@ -34,16 +34,50 @@ std::uint32_t windows_1252(unsigned char byte) {
     }
 }
 
+/// UTF-16 without a mark: every other byte of the beginning, which is ASCII, is 0, and no other.
+bool is_bare_utf16(std::string_view bytes, bool big_endian) {
+    const std::string_view head = bytes.substr(0, 64);
+    if (head.size() < 16) return false;
+    for (std::size_t i = 0; i < head.size(); ++i) {
+        const bool high = (i % 2 == 0) == big_endian;
+        if ((head[i] == '\0') != high) return false;
+    }
+    return true;
+}
+
 /// Machines write nothing beyond the first plane of Unicode; a surrogate becomes a replacement character.
 std::string from_utf16(std::string_view bytes, bool big_endian) {
     std::string text;
-    for (std::size_t i = 2; i + 1 < bytes.size(); i += 2) {
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
         const auto a = static_cast<unsigned char>(bytes[i]);
         const auto b = static_cast<unsigned char>(bytes[i + 1]);
         const std::uint32_t code = big_endian ? 256U * a + b : 256U * b + a;
         append_utf8(text, code >= 0xD800U && code < 0xE000U ? 0xFFFDU : code);
     }
     return text;
+}
+
+/// What a file is that is no table: people take the plot, the report or the spreadsheet for the readings.
+std::string_view kind_of_other_file(std::string_view bytes) {
+    struct Kind {
+        std::string_view begin, name;
+    };
+    constexpr Kind kinds[] = {{"%PDF", "a PDF"},
+                              {"\x89PNG", "a picture (PNG)"},
+                              {"\xFF\xD8\xFF", "a picture (JPEG)"},
+                              {"GIF8", "a picture (GIF)"},
+                              {"PK\x03\x04", "a spreadsheet (xlsx, ods) or a zip file"},
+                              {"\xD0\xCF\x11\xE0", "an old spreadsheet (xls)"},
+                              {"{\\rtf", "a text document (RTF)"},
+                              {"<?xml", "an XML or SVG file"},
+                              {"<svg", "an SVG file"},
+                              {"<!", "an HTML or XML file"},
+                              {"<html", "an HTML file"}};
+    const std::size_t begin = bytes.find_first_not_of(" \t\r\n");
+    if (begin != std::string_view::npos) bytes.remove_prefix(begin);
+    for (const Kind& kind : kinds)
+        if (bytes.starts_with(kind.begin)) return kind.name;
+    return {};
 }
 
 bool is_utf8(std::string_view bytes) {
@@ -64,12 +98,17 @@ bool is_utf8(std::string_view bytes) {
 }  // namespace
 
 std::string text_of(std::string_view bytes, const std::string& file) {
-    if (bytes.starts_with("\xFF\xFE")) return from_utf16(bytes, false);
-    if (bytes.starts_with("\xFE\xFF")) return from_utf16(bytes, true);
+    if (bytes.starts_with("\xFF\xFE")) return from_utf16(bytes.substr(2), false);
+    if (bytes.starts_with("\xFE\xFF")) return from_utf16(bytes.substr(2), true);
+    if (is_bare_utf16(bytes, false)) return from_utf16(bytes, false);
+    if (is_bare_utf16(bytes, true)) return from_utf16(bytes, true);
     if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
-    if (bytes.find('\0') != std::string_view::npos)
-        throw InputError({.file = file}, "is a binary file, expected a table as text",
-                         "Export the test as CSV or text; spreadsheets (xls, xlsx) cannot be read.");
+    std::string kind(kind_of_other_file(bytes));
+    if (kind.empty() && bytes.find('\0') != std::string_view::npos) kind = "a binary file";
+    if (!kind.empty())
+        throw InputError(
+            {.file = file}, "is " + kind + ", expected a table as text",
+            "Export the readings of the test as CSV or text, not its report, plot or spreadsheet.");
     std::string text;
     if (is_utf8(bytes))
         text = bytes;

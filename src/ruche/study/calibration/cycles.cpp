@@ -22,7 +22,8 @@ std::vector<std::size_t> turns(const std::vector<double>& d) {
                 direction = d[i] > d[0] ? 1 : -1;
                 extreme = i;
             }
-        } else if (from_extreme * direction >= 0.0) {
+        } else if (from_extreme * direction > 0.0 || (from_extreme == 0.0 && direction > 0)) {
+            // A hold belongs to loading: at the top to the one before, at the bottom to the one that follows.
             extreme = i;
         } else if (-from_extreme * direction > threshold) {
             found.push_back(extreme);

@@ -7,12 +7,22 @@
 
 namespace ruche {
 
+/// Rows [begin, end) of a record.
+struct RowRange {
+    std::size_t begin = 0, end = 0;
+    std::size_t size() const { return end - begin; }
+};
+
 /// Rows [begin, peak] of a record load, rows [unloading(), end) unload.
 struct Cycle {
     std::size_t begin = 0, peak = 0, end = 0;
     /// Behind the peak, which still is a row of the loading, unless there is no loading.
     std::size_t unloading() const { return peak > begin ? peak + 1 : peak; }
     bool unloads = false;  ///< the displacement comes back by at least half of the way
+
+    RowRange rows(Branch branch) const {
+        return branch == Branch::unloading ? RowRange{unloading(), end} : RowRange{begin, peak + 1};
+    }
 };
 
 /// The load-unload cycles of a record: turns of the displacement by more than a tenth of its whole range (so

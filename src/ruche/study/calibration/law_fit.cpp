@@ -11,8 +11,13 @@
 namespace ruche {
 namespace {
 
-LeastSquaresFit fit_with_weights(LawProblem& law, const Eigen::VectorXd& start) {
-    LeastSquaresFit fit = minimise(law.problem(), start);
+LeastSquaresFit fit_with_weights(LawProblem& law) {
+    LeastSquaresFit fit;
+    for (const Eigen::VectorXd& start : law.starts()) {
+        LeastSquaresFit other = minimise(law.problem(), start);
+        const bool better = other.converged && (!fit.converged || other.sum_of_squares < fit.sum_of_squares);
+        if (fit.p.size() == 0 || better) fit = std::move(other);
+    }
     for (int round = 0; round < 2; ++round) {
         law.weigh(fit);
         fit = minimise(law.problem(), fit.p);
@@ -53,6 +58,15 @@ std::vector<Correlation> strong_correlations(const LawProblem& law, const LeastS
     std::sort(strong.begin(), strong.end(),
               [](const auto& a, const auto& b) { return std::abs(a.value) > std::abs(b.value); });
     return strong;
+}
+
+std::vector<CurveBand> bands(const LawProblem& law, const LeastSquaresFit& fit, double correlation) {
+    const Covariance c = covariance(law.problem(), fit);
+    const Eigen::VectorXd half = std::sqrt(profile_threshold(law, correlation)) * c.deviation;
+    const Eigen::MatrixXd squared = half.asDiagonal() * c.correlation * half.asDiagonal();
+    std::vector<CurveBand> result;
+    for (std::size_t i = 0; i < law.curve_count(); ++i) result.push_back(law.band(fit, squared, i));
+    return result;
 }
 
 /// Rms over the curves of an orientation, of a fit in which it may have had no part.
@@ -104,12 +118,13 @@ LawPrediction predict(const Material& material, const LawCurve& curve) {
 
 LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options) {
     LawProblem law(curves, options);
-    LeastSquaresFit fit = fit_with_weights(law, law.start());
+    LeastSquaresFit fit = fit_with_weights(law);
     const double correlation = law.correlation(fit);
     LawFit result;
     if (options.intervals) {
         result.parameters = estimate(law, fit, correlation);
         result.correlations = strong_correlations(law, fit);
+        result.bands = bands(law, fit, correlation);
         result.left_out = leave_out(law, fit, curves);
     } else {
         const Eigen::VectorXd half =

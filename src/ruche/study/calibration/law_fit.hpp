@@ -47,6 +47,13 @@ struct Correlation {
     double value = 0.0;
 };
 
+/// How well the readings determine the law along one of their curves: half the width of the 95 % interval of
+/// its stress (of its stretch where masses were hung), from the derivatives at the optimum.
+struct CurveBand {
+    double over_full_scale = 0.0;  ///< the widest, over the curve's largest stress (stretch beyond 1)
+    double over_value = 0.0;       ///< the widest over the stress there, from a tenth of the strain on
+};
+
 /// How well one orientation is predicted by a fit to the others.
 struct LeftOutOrientation {
     double angle_deg = 0.0;
@@ -61,6 +68,7 @@ struct LawFit {
     std::vector<ParameterEstimate> parameters;
     std::vector<Correlation> correlations;  ///< beyond 0.95 in size, largest first
     std::vector<double> rms;                ///< per curve: of the stress over its largest
+    std::vector<CurveBand> bands;           ///< per curve; empty without intervals
     std::vector<LeftOutOrientation> left_out;
     double independent_share = 1.0;  ///< 1 over the number of rows that resemble each other
 };
@@ -75,7 +83,8 @@ LawPrediction predict(const Material& material, const LawCurve& curve);
 /// least-squares sense, the material point's transverse and shear strain free, Neo-Hookean share included.
 /// Of a curve by force the stretches are met: (lambda(P) - lambda) times the mean slope of the curve, so that
 /// it is a stress as well. Rows are weighted with their standard deviation: the noise of their curve (from
-/// differences of neighbours) and one misfit of the law for all. Intervals are those of the profile
+/// differences of neighbours; what the curves have in common counts where they have few rows) and one misfit
+/// of the law for all. Intervals are those of the profile
 /// likelihood at 95 %, widened for rows whose residuals resemble their neighbours'.
 [[nodiscard]] LawFit fit_law(std::span<const LawCurve> curves, const LawFitOptions& options);
 

@@ -76,10 +76,8 @@ LawProblem::LawProblem(std::span<const LawCurve> curves, const LawFitOptions& op
     };
 }
 
-Eigen::VectorXd LawProblem::start() const {
-    Material m = options_.start;
-    const double nu = options_.fit_poisson ? 0.3 : m.fabric_poissons_ratio;
-    m.fabric_poissons_ratio = nu;
+std::vector<Eigen::VectorXd> LawProblem::starts() const {
+    std::array<AxisFit, 2> fitted, shared;
     for (int axis = 0; axis < 2; ++axis) {
         const LawCurve& curve = nearest(curves_, axis);
         std::vector<double> green, stress;
@@ -87,11 +85,25 @@ Eigen::VectorXd LawProblem::start() const {
             green.push_back(green_strain(curve.stretch[i]));
             stress.push_back(curve.nominal_stress[i] / curve.stretch[i]);
         }
-        const AxisFit fit = fit_axis(green, stress);
         const auto k = static_cast<std::size_t>(axis);
-        m.*law_parameters[alpha_1 + k] = std::max(fit.alpha, 0.02 * fit.beta);
-        m.*law_parameters[beta_1 + k] = fit.beta;
-        m.*law_parameters[gamma_1 + k] = fit.gamma;
+        fitted[k] = fit_axis(green, stress);
+        // Near rest S = (alpha~ + beta/gamma) E: a half each, with a quarter of the secant up to the end, to
+        // which the locking adds much.
+        const double reached = *std::max_element(green.begin(), green.end());
+        const double secant = *std::max_element(stress.begin(), stress.end()) / reached;
+        shared[k] = {.alpha = 0.25 * secant, .beta = 0.25 * secant * reached, .gamma = 1.03 * reached};
+    }
+    return {start(fitted), start(shared)};
+}
+
+Eigen::VectorXd LawProblem::start(const std::array<AxisFit, 2>& axes) const {
+    Material m = options_.start;
+    const double nu = options_.fit_poisson ? 0.3 : m.fabric_poissons_ratio;
+    m.fabric_poissons_ratio = nu;
+    for (std::size_t k = 0; k < 2; ++k) {
+        m.*law_parameters[alpha_1 + k] = std::max(axes[k].alpha, 0.02 * axes[k].beta);
+        m.*law_parameters[beta_1 + k] = axes[k].beta;
+        m.*law_parameters[gamma_1 + k] = axes[k].gamma;
     }
     m.alpha_3 = std::sqrt(m.alpha_1 * m.alpha_2) / (1.0 + nu);
     Eigen::VectorXd p(free_.size());
@@ -203,33 +215,41 @@ std::vector<double> LawProblem::block(const Eigen::VectorXd& r, int begin, int c
     return values;
 }
 
-void LawProblem::weigh(const LeastSquaresFit& fit) {
-    // Per curve the variance of its noise; what is beyond that is the law's misfit, the same for all.
-    const auto weigh_kind = [&](auto&& begin_of, auto&& count_of, double Rows::*deviation, double floor) {
-        double misfit = 0.0;
-        int curves = 0;
-        std::vector<double> noise;
-        for (const Rows& rows : rows_) {
-            const int count = count_of(rows);
-            noise.push_back(0.0);
-            if (count == 0) continue;
-            const std::vector<double> values = block(fit.residuals, begin_of(rows), count, rows.*deviation);
-            double mean_square = 0.0;
-            for (const double v : values) mean_square += v * v / count;
-            noise.back() = noise_variance(values);
-            misfit += mean_square - noise.back();
-            ++curves;
-        }
-        misfit = curves > 0 ? std::max(misfit / curves, 0.0) : 0.0;
-        for (std::size_t i = 0; i < rows_.size(); ++i)
-            rows_[i].*deviation = std::max(std::sqrt(noise[i] + misfit), floor);
+/// Per curve the variance of its noise; what is beyond that is the law's misfit, the same for all.
+void LawProblem::weigh(const LeastSquaresFit& fit, const Kind& kind, double floor) {
+    double misfit = 0.0;
+    std::vector<Variance> noise;
+    std::vector<std::size_t> curves;
+    // Lengths that were read are alike as lengths: rows by force have them as stresses.
+    const auto unit = [&](std::size_t i) {
+        return curves_[i].by_force && !kind.behind ? rows_[i].mean_slope : 1.0;
     };
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const Rows& rows = rows_[i];
+        const int count = rows.*kind.count;
+        if (count == 0) continue;
+        const int begin = rows.begin + (kind.behind ? rows.stress : 0);
+        const std::vector<double> values = block(fit.residuals, begin, count, rows.*kind.deviation / unit(i));
+        double mean_square = 0.0;
+        for (const double v : values) mean_square += v * v / count;
+        noise.push_back(noise_variance(values));
+        misfit += mean_square - noise.back().value;
+        curves.push_back(i);
+    }
+    if (curves.empty()) return;
+    misfit = std::max(misfit / static_cast<double>(curves.size()), 0.0);
+    const std::vector<double> variances = moderated(noise);
+    for (std::size_t k = 0; k < curves.size(); ++k) {
+        const std::size_t i = curves[k];
+        rows_[i].*kind.deviation = std::max(unit(i) * std::sqrt(variances[k] + misfit), floor);
+    }
+}
+
+void LawProblem::weigh(const LeastSquaresFit& fit) {
     double stress = 0.0;
     for (const Rows& rows : rows_) stress = std::max(stress, rows.stress_scale);
-    weigh_kind([](const Rows& rows) { return rows.begin; }, [](const Rows& rows) { return rows.stress; },
-               &Rows::stress_deviation, 1e-9 * stress);
-    weigh_kind([](const Rows& rows) { return rows.begin + rows.stress; },
-               [](const Rows& rows) { return rows.transverse; }, &Rows::transverse_deviation, 1e-9);
+    weigh(fit, {&Rows::stress, &Rows::stress_deviation, false}, 1e-9 * stress);
+    weigh(fit, {&Rows::transverse, &Rows::transverse_deviation, true}, 1e-9);
 }
 
 double LawProblem::correlation(const LeastSquaresFit& fit) const {
@@ -243,6 +263,26 @@ double LawProblem::relative_rms(const LeastSquaresFit& fit, std::size_t curve) c
     const Rows& rows = rows_[curve];
     return fit.residuals.segment(rows.begin, rows.stress).norm() / std::sqrt(rows.stress) *
            rows.stress_deviation / rows.stress_scale;
+}
+
+CurveBand LawProblem::band(const LeastSquaresFit& fit, const Eigen::MatrixXd& squared,
+                           std::size_t index) const {
+    const Rows& rows = rows_[index];
+    const LawCurve& curve = curves_[index];
+    const double most = largest(curve.stretch) - 1.0;
+    CurveBand band;
+    for (int i = 0; i < rows.stress; ++i) {
+        const auto row = static_cast<std::size_t>(i);
+        const Eigen::RowVectorXd by_parameter = rows.stress_deviation * fit.jacobian.row(rows.begin + i);
+        const double half = std::sqrt(std::max(0.0, by_parameter.dot(by_parameter * squared)));
+        band.over_full_scale = std::max(band.over_full_scale, half / rows.stress_scale);
+        const double residual = rows.stress_deviation * fit.residuals[rows.begin + i];
+        const double strain = curve.stretch[row] - 1.0;
+        const double value =
+            residual + (curve.by_force ? rows.mean_slope * strain : curve.nominal_stress[row]);
+        if (strain >= 0.1 * most && value > 0.0) band.over_value = std::max(band.over_value, half / value);
+    }
+    return band;
 }
 
 void LawProblem::leave_out(double angle_deg) {

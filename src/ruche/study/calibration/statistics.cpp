@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
 #include <cmath>
 
 namespace ruche {
@@ -25,11 +27,52 @@ double half_width_of_mean(const Spread& s) {
     return student_t(0.95, s.count - 1) * s.deviation / std::sqrt(static_cast<double>(s.count));
 }
 
-double noise_variance(std::span<const double> r) {
-    if (r.size() < 2) return 0.0;
+Variance noise_variance(std::span<const double> r) {
+    if (r.size() < 2) return {};
     double sum = 0.0;
     for (std::size_t i = 1; i < r.size(); ++i) sum += (r[i] - r[i - 1]) * (r[i] - r[i - 1]);
-    return 0.5 * sum / static_cast<double>(r.size() - 1);
+    const auto n = static_cast<double>(r.size());
+    return {0.5 * sum / (n - 1.0), 2.0 * (n - 1.0) * (n - 1.0) / (3.0 * n - 4.0)};
+}
+
+/// x with trigamma(x) = value, which falls from infinity to 0.
+static double inverse_trigamma(double value) {
+    double low = std::log(1e-6);
+    double high = std::log(1e9);
+    for (int i = 0; i < 60; ++i) {
+        const double middle = 0.5 * (low + high);
+        (boost::math::trigamma(std::exp(middle)) > value ? low : high) = middle;
+    }
+    return std::exp(0.5 * (low + high));
+}
+
+std::vector<double> moderated(std::span<const Variance> variances) {
+    std::vector<double> values;
+    values.reserve(variances.size());
+    for (const Variance& v : variances) values.push_back(v.value);
+    if (values.size() < 2 || *std::min_element(values.begin(), values.end()) <= 0.0) return values;
+    // log s^2 has the mean log sigma^2 + digamma(f/2) - log(f/2) and the variance trigamma(f/2).
+    std::vector<double> logs;
+    double of_estimates = 0.0;
+    double squares = 0.0;
+    double freedom = 0.0;
+    for (const Variance& v : variances) {
+        const double half = 0.5 * v.freedom;
+        logs.push_back(std::log(v.value) - boost::math::digamma(half) + std::log(half));
+        of_estimates += boost::math::trigamma(half) / static_cast<double>(variances.size());
+        squares += v.freedom * v.value;
+        freedom += v.freedom;
+    }
+    const Spread s = spread(logs);
+    const double of_sigma = s.deviation * s.deviation - of_estimates;
+    // They differ by no more than chance: one variance for all.
+    if (of_sigma <= 0.0) return std::vector<double>(values.size(), squares / freedom);
+    const double half = inverse_trigamma(of_sigma);
+    const double common = std::exp(s.mean + boost::math::digamma(half) - std::log(half));
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] =
+            (2.0 * half * common + variances[i].freedom * values[i]) / (2.0 * half + variances[i].freedom);
+    return values;
 }
 
 double correlation_length(std::span<const std::vector<double>> curves) {

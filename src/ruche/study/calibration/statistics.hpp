@@ -18,8 +18,20 @@ Spread spread(std::span<const double> values);
 /// Half the width of the 95 % interval of the mean; 0 for one value, about which nothing is known.
 double half_width_of_mean(const Spread& s);
 
-/// Variance of white noise on a smooth curve: half the mean squared difference of neighbours.
-double noise_variance(std::span<const double> residuals);
+/// An estimated variance, and how much is known about it: that of `freedom` independent squares.
+struct Variance {
+    double value = 0.0;
+    double freedom = 0.0;
+};
+
+/// Variance of white noise on a smooth curve: half the mean squared difference of neighbours (von Neumann
+/// 1941; with n values it scatters as that of 2 (n-1)^2 / (3n-4) independent ones).
+Variance noise_variance(std::span<const double> residuals);
+
+/// Variances of the same kind that are known from few values each, drawn towards what they have in common
+/// (Smyth 2004): as far as they scatter no more than such estimates do. What is known well keeps its value.
+/// Some that are 0, as in files without noise, leave all as they are.
+std::vector<double> moderated(std::span<const Variance> variances);
 
 /// By what factor neighbours that resemble each other reduce the number of independent residuals:
 /// 1 + 2 sum_k rho_k, the sum up to the first autocorrelation that is not above its scatter for white noise,

@@ -8,12 +8,13 @@
 #include <set>
 
 #include "ruche/study/calibration/pull.hpp"
+#include "ruche/study/calibration/repeated_cycles.hpp"
 #include "ruche/study/calibration/statistics.hpp"
 
 namespace ruche {
 namespace {
 
-constexpr std::size_t most_rows = 1500;  // of a branch in the fit; more add time, not knowledge
+constexpr std::size_t most_rows = 1500;  // of a test in the fit; of more, neighbours are averaged
 constexpr double large_slack = 0.02;
 
 Place place(const TensionTest& test, int line = 0) { return {.file = test.file, .line = line}; }
@@ -247,30 +248,64 @@ void check_swapped(const TensionCurve& curve) {
                      "and length.");
 }
 
-void take_rows(TensionCurve& curve, double thickness) {
+/// What a row of a record says.
+struct TensionRow {
+    double stretch = 0.0;
+    double stress = 0.0;      // nominal, MPa
+    double transverse = 0.0;  // Green strain; 0 without widths
+};
+
+std::vector<TensionRow> tension_rows(const TensionCurve& curve, const Cycle& cycle, double thickness) {
     const TensionTest& test = curve.test;
     const TestRecord& r = curve.record;
-    const Cycle& cycle = curve.cycles[curve.cycle];
-    const bool unloading = test.branch == Branch::unloading;
-    const std::size_t begin = unloading ? cycle.unloading() : cycle.begin;
-    const std::size_t end = unloading ? cycle.end : cycle.peak + 1;
-    const std::size_t stride = std::max<std::size_t>(1, (end - begin) / most_rows);
-    const double area = test.width_mm * thickness;
-    for (std::size_t i = begin; i < end; i += stride) {
+    std::vector<TensionRow> rows;
+    const RowRange range = cycle.rows(test.branch);
+    for (std::size_t i = range.begin; i < range.end; ++i) {
         const double stretch = 1.0 + (r.displacement[i] - curve.zero) / curve.rest_length;
         // A length that was read may scatter about the rest length; a clamp that comes back too far makes
         // folds.
         if (stretch < (r.driven_by_force ? 0.9 : 1.0) ||
             (test.pretension_n > 0.0 && r.force[i] < test.pretension_n))
             continue;
-        curve.stretch.push_back(stretch);
-        curve.nominal_stress.push_back(r.force[i] / area);
-        if (!r.width.empty()) curve.transverse.push_back(green_strain(r.width[i] / test.width_mm));
+        rows.push_back({stretch, r.force[i] / (test.width_mm * thickness),
+                        r.width.empty() ? 0.0 : green_strain(r.width[i] / test.width_mm)});
     }
-    if (curve.stretch.size() < fewest_rows)
-        throw InputError(place(test, r.line[std::min(begin, r.size() - 1)]),
-                         fmt::format("the {} branch has {} rows; at least {} are needed",
-                                     unloading ? "unloading" : "loading", curve.stretch.size(), fewest_rows));
+    return rows;
+}
+
+void take_rows(TensionCurve& curve, double thickness) {
+    std::vector<TensionRow> rows;
+    for (const std::size_t cycle : curve.used) {
+        const std::vector<TensionRow> more = tension_rows(curve, curve.cycles[cycle], thickness);
+        rows.insert(rows.end(), more.begin(), more.end());
+    }
+    if (rows.size() < fewest_rows) {
+        const Branch branch = curve.test.branch;
+        const std::size_t begin = curve.cycles[curve.cycle].rows(branch).begin;
+        throw InputError(
+            place(curve.test, curve.record.line[std::min(begin, curve.record.size() - 1)]),
+            fmt::format("the {} branch has {} rows; at least {} are needed",
+                        branch == Branch::unloading ? "unloading" : "loading", rows.size(), fewest_rows));
+    }
+    // In the order of what was set, not of what was read, and all cycles as one curve: what the law misses is
+    // the same in each, and is seen as neighbours that resemble each other.
+    const auto by = curve.record.driven_by_force ? &TensionRow::stress : &TensionRow::stretch;
+    std::stable_sort(rows.begin(), rows.end(),
+                     [&](const TensionRow& a, const TensionRow& b) { return a.*by > b.*by; });
+    const std::size_t group = (rows.size() + most_rows - 1) / most_rows;
+    for (std::size_t i = 0; i < rows.size(); i += group) {
+        const std::size_t end = std::min(i + group, rows.size());
+        TensionRow mean;
+        for (std::size_t k = i; k < end; ++k) {
+            const double share = 1.0 / static_cast<double>(end - i);
+            mean.stretch += share * rows[k].stretch;
+            mean.stress += share * rows[k].stress;
+            mean.transverse += share * rows[k].transverse;
+        }
+        curve.stretch.push_back(mean.stretch);
+        curve.nominal_stress.push_back(mean.stress);
+        if (!curve.record.width.empty()) curve.transverse.push_back(mean.transverse);
+    }
 }
 
 void check_widths(TensionCurve& curve) {
@@ -298,6 +333,11 @@ std::string TensionCurve::name() const {
     return fmt::format("{} ({:g} deg)", file_name(test.file), test.angle_deg);
 }
 
+std::string TensionCurve::used_cycles() const {
+    if (used.size() == 1) return fmt::format("cycle {}", used.front() + 1);
+    return fmt::format("cycles {} to {}", used.front() + 1, used.back() + 1);
+}
+
 TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
     TensionCurve curve{.test = test, .rest_length = test.length_mm};
     const CsvTable table = read_csv_table(test.file, test.specimen);
@@ -317,6 +357,8 @@ TensionCurve read_tension_curve(const TensionTest& test, double thickness) {
         throw InputError(place(test), "the displacement never changes",
                          "Name the column in [columns]: displacement = \"...\".");
     curve.cycle = choose_cycle(curve);
+    curve.used = {curve.cycle};
+    if (test.cycle == 0) curve.used = repeated_cycles(curve.record, curve.cycles, curve.cycle, test.branch);
     curve.zero = zero_of(curve, curve.cycles[curve.cycle]);
     curve.rest_length = test.length_mm + curve.zero;
     take_rows(curve, thickness);
