@@ -85,11 +85,11 @@ IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<cons
     return {gauss / area, bend / area};
 }
 
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape) {
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, const Vec2& along) {
     Vec3 sight = Vec3::Zero();
     std::set<int> printed;
     for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
-        sight += layout_area(layout.mesh, t) * deformation(layout.mesh, shape, t).col(1);
+        sight += layout_area(layout.mesh, t) * (deformation(layout.mesh, shape, t) * along);
         if (layout.print[static_cast<std::size_t>(t)].bare()) continue;
         printed.insert(layout.mesh.triangles[static_cast<std::size_t>(t)].begin(),
                        layout.mesh.triangles[static_cast<std::size_t>(t)].end());

@@ -33,10 +33,11 @@ struct IntegratedCurvature {
 IntegratedCurvature integrated_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
                                          const LayoutRing& ring);
 
-/// Curvature of the circle through all printed vertices as one looks along the layout's y direction, where
-/// the released sheet's mean direction is meant: the silhouette of a roll seen from its front. Not negative;
-/// NaN when there is no circle.
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape);
+/// Curvature of the circle through all printed vertices as one looks along a direction of the layout, y by
+/// default, where the released sheet's mean direction is meant: the silhouette of a roll seen from its front.
+/// Not negative; NaN when there is no circle.
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape,
+                            const Vec2& along = Vec2::UnitY());
 
 /// The strips whose id begins with `begin` and whose centre line lies inside the middle `share` of the box
 /// around all centre lines; indices into layout.strips.
