@@ -1,8 +1,10 @@
-"""`ruche compare`: a result against scans of itself, as another program writes them."""
+"""`ruche compare`: a result against scans of itself and photos, as another program writes them."""
 
 import json
 import os
+import struct
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
@@ -58,3 +60,43 @@ def test_a_scan_in_the_wrong_format_or_unit_is_refused(result, tmp_path):
     assert run.returncode == 2 and "yard" in run.stderr
     run, _ = compare(result, result / "scene.toml")
     assert run.returncode == 2 and "neither OBJ, PLY nor STL" in run.stderr
+
+
+def png(width, height, shade):
+    """A grey picture as a PNG file; shade(x, y) gives 0 to 255."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    y, x = np.mgrid[0:height, 0:width]
+    rows = np.pad(np.clip(shade(x, y), 0, 255).astype(np.uint8), ((0, 0), (1, 0)))
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(rows.tobytes())) + chunk(b"IEND", b""))
+
+
+def test_a_silhouette_photo_gives_a_circle_in_mm(result, tmp_path):
+    photo = tmp_path / "roll.png"
+    # Edges as wide as a pixel: a disc of 150 pixels, 20 pixels per mm.
+    photo.write_bytes(png(640, 480, lambda x, y: 230 - 180 * np.clip(150 - np.hypot(x - 320, y - 240) + 0.5, 0, 1)))
+    run, report = compare(result, photo, "--known-length-mm", "30", "--known-length-at", "20,10,620,10")
+    assert run.returncode == 0, run.stderr
+    assert report["mm_per_px"] == pytest.approx(0.05)
+    assert report["curvature_per_mm"] == pytest.approx(1 / 7.5, rel=1e-3)
+    errors = report["relative_errors"]
+    assert errors["scale"] == pytest.approx(2**0.5 / 600)  # a pixel at either end of 600
+    assert 0 < errors["edge"] < 0.5 / 150  # somewhere in an edge that is as wide as a pixel
+    assert errors["fit"] < 1e-3
+    assert report["uncertainty_per_mm"] == pytest.approx(report["curvature_per_mm"] * np.linalg.norm(list(errors.values())))
+    assert report["result_curvature_per_mm"] > report["result_outline_curvature_per_mm"] > 0
+    assert f"{report['curvature_per_mm']:.5f} +-" in run.stdout and "silhouette.png" in run.stdout
+    assert (result / "silhouette.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_photo_without_scale_or_with_a_scans_options_is_refused(result, tmp_path):
+    photo = tmp_path / "roll.png"
+    photo.write_bytes(png(64, 48, lambda x, y: 200 + 0 * x))
+    scale = "--known-length-mm", "30", "--known-length-at", "2,1,62,1"
+    for options, said in [((), "--known-length-mm: is missing"), (scale + ("--unit", "cm"), "--unit: is for scans"), (scale, "stands out")]:
+        run, _ = compare(result, photo, *options)
+        assert run.returncode == 2 and said in run.stderr, run.stderr
+    run, _ = compare(result, result / "shape.stl", *scale)
+    assert run.returncode == 2 and "--known-length-mm: is for photos" in run.stderr

@@ -3,6 +3,7 @@
 import os
 import struct
 import subprocess
+import zlib
 
 import pytest
 
@@ -61,18 +62,46 @@ def test_films_have_the_frames_that_were_asked_for(place, kind):
     assert data.count(b"ANMF") == {"turntable": 5, "release": 6}[kind]
 
 
+def chunks(data):
+    """Kind and contents of a PNG's chunks, their sums checked."""
+    at = 8
+    while at < len(data):
+        size, = struct.unpack(">I", data[at : at + 4])
+        body = data[at + 4 : at + 8 + size]
+        assert struct.unpack(">I", data[at + 8 + size : at + 12 + size])[0] == zlib.crc32(body)
+        yield body[:4], body[4:]
+        at += 12 + size
+
+
+@pytest.mark.parametrize("transparent", [False, True])
+def test_a_film_as_animated_png_has_whole_frames_in_order(place, transparent):
+    run = ruche("render", "out", *SIZE, "--turntable", "--frames", "4", "--seconds", "2", "-o", "t.png", *["--transparent"] * transparent, cwd=place)
+    assert run.returncode == 0, run.stderr
+    width, height, kind = png_header(place / "t.png")
+    assert (width, height, kind) == (120, 90, "rgba" if transparent else "rgb")
+    found = list(chunks((place / "t.png").read_bytes()))
+    assert [k for k, _ in found] == [b"IHDR", b"acTL", b"fcTL", b"IDAT"] + 3 * [b"fcTL", b"fdAT"] + [b"IEND"]
+    assert found[1][1] == struct.pack(">II", 4, 0)
+    ordered = [struct.unpack(">I", data[:4])[0] for k, data in found if k in (b"fcTL", b"fdAT")]
+    assert ordered == list(range(7))
+    assert all(data[4:] == struct.pack(">IIIIHHBB", 120, 90, 0, 0, 500, 1000, 0, 0) for k, data in found if k == b"fcTL")
+    frames = [zlib.decompress(data[4 * (k == b"fdAT") :]) for k, data in found if k in (b"IDAT", b"fdAT")]
+    assert {len(f) for f in frames} == {90 * (1 + 120 * (3 + transparent))} and len(set(frames)) == 4
+
+
 def test_mistakes_are_named(place):
     (place / "empty").mkdir(exist_ok=True)
     for arguments, text in [
         (["empty"], "holds no result"),
         (["out", "--colour", "stretch"], "is none of"),
-        (["out", "--turntable", "-o", "x.png"], "another ending than .webp"),
+        (["out", "--turntable", "-o", "x.gif"], "ends neither in .webp nor in .png or .apng"),
+        (["out", "-o", "x.webp"], "another ending than .png"),
         (["out", "--view", "below"], "--view"),
     ]:
         run = ruche("render", *arguments, cwd=place)
         assert run.returncode == 2, run.stdout + run.stderr
         assert text in run.stderr
-    assert not (place / "x.png").exists()
+    assert not list(place.glob("x.*"))
 
 
 def test_a_drawing_that_has_changed_is_noticed(place, tmp_path):

@@ -1,39 +1,28 @@
 """The studio's server, spoken to directly: what it answers, and what it must refuse."""
 
+import base64
 import json
 import os
-import random
 import re
-import signal
+import resource
 import socket
 import subprocess
-import threading
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "fuzz"))
+import studio_fuzz  # noqa: E402
+from studio_fuzz import DRAWING, SECRET  # noqa: E402
+
 PROGRAM = os.environ["RUCHE_PROGRAM"]
 SANITIZED = "RUCHE_SANITIZED" in os.environ
-FUZZ_SECONDS = float(os.environ.get("RUCHE_FUZZ_SECONDS", "8"))
-DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">
-<path id="strip" d="M 4 5 H 16" stroke="#d9480f" stroke-width="1" fill="none"/></svg>"""
-SECRET = "what nobody may read"
 
 
-class Studio:
+class Studio(studio_fuzz.Server):
     """A running server in a folder of its own, beside a secret that it must not give away."""
-
-    def __init__(self, place):
-        self.folder = place / "work"
-        self.folder.mkdir()
-        (place / "secret.svg").write_text(DRAWING.replace("strip", SECRET))
-        (place / "secret.toml").write_text(SECRET)
-        (self.folder / "d.svg").write_text(DRAWING)
-        (self.folder / "link.svg").symlink_to(place / "secret.svg")
-        (self.folder / "up").symlink_to(place)
-        self.process = subprocess.Popen([PROGRAM, "studio", self.folder, "--no-browser"], stdout=subprocess.PIPE, text=True)
-        line = self.process.stdout.readline()
-        self.port = int(re.search(r"http://127\.0\.0\.1:(\d+)/", line).group(1))
 
     def send(self, raw, timeout=600):
         """The bytes that come back until the server closes."""
@@ -92,14 +81,10 @@ class Studio:
             time.sleep(0.1)
         raise AssertionError("the job does not end")
 
-    def close(self):
-        self.process.send_signal(signal.SIGTERM)
-        return self.process.wait(600)
-
 
 @pytest.fixture
 def studio(tmp_path):
-    made = Studio(tmp_path)
+    made = Studio(PROGRAM, tmp_path)
     yield made
     if made.process.poll() is None:
         assert made.close() == 0
@@ -196,6 +181,32 @@ def test_no_scene_reads_outside_the_folder(studio, change):
 def test_start_and_difference_stay_in_the_folder(studio):
     assert studio.post("/api/release", SCENE | {"start": "../elsewhere"})[0] == 403
     assert studio.get("/api/difference?a=../x&b=up")[0] in (403, 422)
+
+
+def test_a_result_is_compared_with_a_scan_of_itself_and_nothing_outside_is_read(studio):
+    _, answer = studio.post("/api/release", SCENE | {"values": SCENE["values"] | {"output.stl": True}})
+    assert studio.finished(answer["id"])["outcome"] == "converged"
+    scan = (studio.folder / "d.out/shape.stl").read_bytes()
+    order = {"run": "d.out", "made": "../my scan.STL", "bytes": base64.b64encode(scan).decode(), "unit": "mm"}
+    status, answer = studio.post("/api/compare", order)
+    assert status == 200 and answer["made"] == "my-scan.stl"
+    assert studio.finished(answer["id"])["outcome"] == "compared"
+    assert (studio.folder / "my-scan.stl").read_bytes() == scan
+    assert json.loads(studio.get("/files/d.out/compare.json")[1])["rms_mm"] < 0.46
+    assert b"scan_distance_mm" in studio.get("/files/d.out/compare.html")[1]
+    assert "sandbox" in studio.headers
+    assert json.loads(studio.get("/api/runs")[1])[0]["compared"]
+    assert json.loads(studio.get("/api/form")[1])["scans"] == ["my-scan.stl"]
+    (studio.folder.parent / "secret.obj").write_text("v 0 0 0\n" * 20)
+    for wrong in ({"run": ".."}, {"run": "up"}, {"run": "none"}, {"made": "s.txt"}, {"made": "s"}, {"bytes": "?"}, {"bytes": 3}):
+        assert studio.post("/api/compare", order | wrong)[0] in (403, 422), wrong
+    (studio.folder / "out of here").mkdir()
+    for name in "report.json", "state.ruche", "scene.toml":
+        (studio.folder / "out of here" / name).write_bytes((studio.folder / "d.out" / name).read_bytes().replace(b"d.svg", b"../secret.svg"))
+    assert studio.post("/api/compare", {"run": "out of here", "made": "my-scan.stl"})[0] == 403
+    for scan in "../secret.obj", "up/secret.obj", "/etc/passwd", "":
+        status, answer = studio.post("/api/compare", {"run": "d.out", "made": scan})
+        assert status in (403, 422), scan
 
 
 def test_uploads_land_in_the_folder_under_a_plain_name(studio):
@@ -329,6 +340,24 @@ def test_a_killed_server_leaves_no_half_result(studio):
             assert (folder / "state.ruche").exists()
 
 
+def test_a_full_disk_loses_nothing_finished_and_is_said(studio):
+    _, first = studio.post("/api/release", SCENE)
+    studio.finished(first["id"])
+    finished = {path: path.read_bytes() for path in (studio.folder / "d.out").iterdir()}
+    before = resource.prlimit(studio.process.pid, resource.RLIMIT_FSIZE)
+    resource.prlimit(studio.process.pid, resource.RLIMIT_FSIZE, (1000, before[1]))  # bytes that a file may have
+    _, second = studio.post("/api/release", SCENE)
+    state = studio.finished(second["id"])
+    assert state["state"] == "failed" and "d-2.out" in state["error"]["message"], state
+    status, answer = studio.post("/api/upload", {"name": "large.svg", "text": DRAWING + " " * 2000})
+    assert status >= 400 and "large.svg" in answer["error"]["message"]
+    assert {path: path.read_bytes() for path in (studio.folder / "d.out").iterdir()} == finished
+    assert [run["folder"] for run in json.loads(studio.get("/api/runs")[1])] == ["d.out"]
+    resource.prlimit(studio.process.pid, resource.RLIMIT_FSIZE, before)
+    _, third = studio.post("/api/release", SCENE)
+    assert studio.finished(third["id"])["outcome"] == "converged"
+
+
 def test_bad_folders_and_ports_are_said_so(studio, tmp_path):
     run = subprocess.run([PROGRAM, "studio", tmp_path / "none", "--no-browser"], capture_output=True, text=True, timeout=600)
     assert run.returncode == 2 and "is not a folder" in run.stderr
@@ -337,68 +366,11 @@ def test_bad_folders_and_ports_are_said_so(studio, tmp_path):
     assert run.returncode == 1 and "in use" in run.stderr
 
 
-def mutated(generator, seed):
-    """Requests that are nearly right."""
-    data = bytearray(seed)
-    for _ in range(generator.randint(1, 6)):
-        kind = generator.randrange(5)
-        at = generator.randrange(len(data) + 1)
-        if kind == 0 and data:
-            data[min(at, len(data) - 1)] = generator.randrange(256)
-        elif kind == 1:
-            del data[at : at + generator.randint(1, 30)]
-        elif kind == 2:
-            data[at:at] = generator.randbytes(generator.randint(1, 20))
-        elif kind == 3:
-            data[at:at] = data[at : at + 40] * generator.randint(1, 20)
-        else:
-            odd = [b"\x00", b"..", b"%2e", b"\r\n\r\n", b"-1", b"1e999", b"[" * 3000, b"\xff\xfe", b'"', b"{}", b"99999999999999999999"]
-            data[at:at] = generator.choice(odd)
-    return bytes(data)
-
-
-def test_fuzzed_requests_do_not_bring_it_down(studio):
-    """Eight seconds; RUCHE_FUZZ_SECONDS=300 for five minutes."""
-    host = f"Host: 127.0.0.1:{studio.port}\r\n"
-    bodies = {
-        "/api/drawing": SCENE | {"rules": [{"match": "#d9480f", "thickness_mm": 0.9}]},
-        "/api/preview": SCENE | {"owner": "fuzz"},
-        "/api/upload": {"name": "f.svg", "text": DRAWING},
-        "/api/cancel": {"id": 1},
-    }
-    seeds = [f"GET {t} HTTP/1.1\r\n{host}\r\n".encode() for t in ("/", "/api/form", "/api/shape?mesh=1", "/files/d.svg", "/api/difference?a=x&b=y")]
-    posts = []
-    for target, body in bodies.items():
-        text = json.dumps(body)
-        posts.append((target, text.encode()))
-        seeds.append(f"POST {target} HTTP/1.1\r\n{host}Content-Type: application/json\r\nContent-Length: {len(text)}\r\n\r\n{text}".encode())
-    until = time.monotonic() + FUZZ_SECONDS
-    counts = [0, 0]
-
-    def attack(number):
-        generator = random.Random(number)
-        while time.monotonic() < until:
-            if generator.random() < 0.4:
-                raw = mutated(generator, generator.choice(seeds))
-            else:  # a sound envelope around a spoilt letter
-                target, body = generator.choice(posts)
-                body = mutated(generator, body)
-                raw = f"POST {target} HTTP/1.1\r\n{host}Content-Type: application/json\r\nContent-Length: {len(body)}\r\n\r\n".encode() + body
-            with socket.create_connection(("127.0.0.1", studio.port), 5) as connection:
-                connection.settimeout(0.5)
-                try:
-                    connection.sendall(raw)
-                    connection.shutdown(socket.SHUT_WR)
-                    connection.recv(4096)
-                except OSError:
-                    pass
-            counts[number] += 1
-
-    threads = [threading.Thread(target=attack, args=(number,)) for number in (0, 1)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    print(f"{sum(counts)} requests in {FUZZ_SECONDS:g} s")
-    assert studio.alive(), studio.process.poll()
-    assert sum(counts) > 5 * FUZZ_SECONDS
+def test_fuzzed_requests_do_not_bring_it_down(tmp_path):
+    """A few seconds of tests/fuzz/studio_fuzz.py, always the same requests; run it by itself for minutes."""
+    attack = studio_fuzz.Attack(studio_fuzz.Server(PROGRAM, tmp_path), seed=20261126, threads=3)
+    attack.run(lambda number: number < 1500)
+    print(attack.summary())
+    assert attack.failures == []
+    assert sum(attack.statuses.values()) == 1500
+    assert attack.statuses[200] > 100 and attack.statuses[422] > 100, attack.summary()  # both sides of the fence

@@ -72,24 +72,35 @@ double misplaced(const Result& result, const ScanComparison& found, double to = 
 
 }  // namespace
 
-TEST_CASE("scan comparison: half a noisy scan in cm is put back to 0.05 mm, its unit and side are found") {
+TEST_CASE(
+    "scan comparison: half a noisy scan in cm is put back as far as its points tell, its unit and side "
+    "found") {
     const Result result = hill();
     const SurfaceFields fields = surface_fields(result);
-    std::vector<Vec3> points = points_of(front_skin(result, fields), 60000, 0.3);
-    std::erase_if(points, [](const Vec3& p) { return p.x() > 22.0; });
-    const ScanComparison found = compare_with_scan(result, fields, scan_of(points, 10.0), {});
-    CHECK(found.unit == "cm");
-    CHECK(found.unit_guessed);
-    CHECK(found.skin == Skin::front);
-    // Where it was scanned; an error of the turn grows beyond. By the normals of these 30,000 points alone
-    // noise of 0.3 mm would leave the worst point of the scanned half with a standard deviation of 0.09 mm
-    // and that of the sheet with 0.15 mm (sigma^2 (J^T J)^-1); the rims tell the rest.
-    CHECK(misplaced(result, found, 22.0) < 0.05);
-    CHECK(misplaced(result, found) < 0.1);
-    // Only what is normal to the surface counts of the noise, but rims and ridges have no normal.
-    CHECK(found.rms == doctest::Approx(0.3).epsilon(0.1));
-    CHECK(std::abs(found.mean) < 0.03);
-    CHECK(found.covered == doctest::Approx(0.5).epsilon(0.15));
+    constexpr int scans = 3;
+    double half = 0.0;
+    double whole = 0.0;
+    for (unsigned seed = 1; seed <= scans; ++seed) {
+        random_numbers.seed(seed);
+        std::vector<Vec3> points = points_of(front_skin(result, fields), 60000, 0.3);
+        std::erase_if(points, [](const Vec3& p) { return p.x() > 22.0; });
+        const ScanComparison found = compare_with_scan(result, fields, scan_of(points, 10.0), {});
+        CHECK(found.unit == "cm");
+        CHECK(found.unit_guessed);
+        CHECK(found.skin == Skin::front);
+        half += std::pow(misplaced(result, found, 22.0), 2) / scans;
+        whole += std::pow(misplaced(result, found), 2) / scans;
+        // Only what is normal to the surface counts of the noise, but rims and ridges have no normal.
+        CHECK(found.rms == doctest::Approx(0.3).epsilon(0.1));
+        CHECK(std::abs(found.mean) < 0.03);
+        CHECK(found.covered == doctest::Approx(0.5).epsilon(0.15));
+    }
+    // An error of the turn grows beyond what was scanned. By the normals of these 30,000 points alone noise
+    // of 0.3 mm leaves the worst point of the scanned half with a standard deviation of 0.09 mm and that of
+    // the sheet with 0.15 mm (sigma^2 (J^T J)^-1). The mean of three squares is below 3.8 of them in 99 of
+    // 100 cases.
+    CHECK(std::sqrt(half) < std::sqrt(3.8) * 0.09);
+    CHECK(std::sqrt(whole) < std::sqrt(3.8) * 0.15);
 }
 
 TEST_CASE("scan comparison: the back and both sides are recognised, in every unit") {

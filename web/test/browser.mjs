@@ -1,8 +1,8 @@
 // A page of a result in headless Chromium, opened from disk, with everything that should not happen on record.
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { execFileSync, spawn } from "node:child_process";
+import { copyFileSync, existsSync, mkdirSync, mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
-import { join } from "node:path";
+import { basename, join } from "node:path";
 import { pathToFileURL } from "node:url";
 
 import { chromium } from "playwright-core";
@@ -57,6 +57,22 @@ export async function open(browser, result, options = {}) {
     await page.waitForSelector("html[data-ready]", { timeout: 600000 });
     await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
     return page;
+}
+
+/** A studio in a new folder with copies of some files; `address`, `folder`, and `close()` when it is not needed any more. */
+export async function studio(...files) {
+    const folder = join(scratch(), "work");
+    mkdirSync(folder);
+    for (const file of files) copyFileSync(file, join(folder, basename(file)));
+    const server = spawn(program, ["studio", folder, "--no-browser"], { stdio: ["ignore", "pipe", "inherit"] });
+    const address = await new Promise((found, failed) => {
+        server.stdout.on("data", (text) => {
+            const [match] = String(text).match(/http:\S+/) ?? [];
+            if (match) found(match);
+        });
+        server.on("exit", () => failed(new Error("the server did not start")));
+    });
+    return { address, folder, close: () => new Promise((done) => { server.on("exit", done); server.kill("SIGTERM"); }) };
 }
 
 /** Pictures go to RUCHE_SCREENSHOTS, for people to look at. */

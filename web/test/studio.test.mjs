@@ -1,42 +1,32 @@
 // The studio as a person uses it: drop a drawing, set numbers, release, cancel, look, compare, take files away.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { copyFileSync, mkdirSync, readFileSync, existsSync } from "node:fs";
+import { copyFileSync, existsSync, readFileSync } from "node:fs";
 import { after, before, test } from "node:test";
 import { dirname, join } from "node:path";
 import { fileURLToPath, pathToFileURL } from "node:url";
 
-import { launch, scratch, screenshot } from "./browser.mjs";
+import { launch, screenshot, studio } from "./browser.mjs";
 
 const program = process.env.RUCHE_PROGRAM ?? "build/release/ruche";
 const source = join(dirname(fileURLToPath(import.meta.url)), "..", "..");
 const torus = join(source, "examples/torus/torus.svg");
 const desktop = { width: 1440, height: 1000 };
 let browser;
-let server;
-let address;
-let folder;
 
 before(async () => {
-    folder = join(scratch(), "work");
-    mkdirSync(folder);
-    copyFileSync(torus, join(folder, "torus.svg"));
-    server = spawn(program, ["studio", folder, "--no-browser"], { stdio: ["ignore", "pipe", "inherit"] });
-    address = await new Promise((found, failed) => {
-        server.stdout.on("data", (text) => {
-            const [match] = String(text).match(/http:\S+/) ?? [];
-            if (match) found(match);
-        });
-        server.on("exit", () => failed(new Error("the server did not start")));
-    });
     browser = await launch();
 }, { timeout: 600000 });
-after(async () => {
-    await browser?.close();
-    server?.kill("SIGTERM");
-});
+after(() => browser?.close());
 
-async function open(options = {}) {
+/** A studio for one test alone, with the torus in its folder; what a test finds there it has put there. */
+async function fresh(t) {
+    const made = await studio(torus);
+    t.after(made.close);
+    return made;
+}
+
+async function open(address, options = {}) {
     const context = await browser.newContext({ viewport: desktop, acceptDownloads: true, ...options });
     context.setDefaultTimeout(600000);
     const page = await context.newPage();
@@ -72,10 +62,10 @@ async function set(page, label, value) {
 
 const idle = (page) => page.waitForFunction(async () => (await (await fetch("/api/jobs")).json()).every((j) => !["running", "waiting"].includes(j.state)), undefined, { timeout: 600000, polling: 200 });
 const shown = (page, name) => page.waitForSelector(`section.result[aria-label="result ${name}"]`, { timeout: 600000 });
-const runs = async () => (await (await fetch(`${address}api/runs`)).json()).map((r) => r.folder).sort();
 
-test("studio: a drawing that is dropped is shown to scale and previewed after every change", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: a drawing that is dropped is shown to scale and previewed after every change", { timeout: 600000 }, async (t) => {
+    const { address, folder } = await fresh(t);
+    const page = await open(address);
     await drop(page, torus, "my torus.svg");
     await page.waitForFunction(() => document.querySelector("#source").value.includes("my-torus.svg"));
     await page.waitForFunction(() => document.querySelectorAll(".layout .strip").length > 20);
@@ -101,8 +91,9 @@ test("studio: a drawing that is dropped is shown to scale and previewed after ev
     await page.context().close();
 });
 
-test("studio: release, cancel, release again, pick a strip, colour, take the report away, compare two", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: release, cancel, release again, pick a strip, colour, take the report away, compare two", { timeout: 600000 }, async (t) => {
+    const { address, folder } = await fresh(t);
+    const page = await open(address);
     await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
     await set(page, "fabric.prestretch", 1.7);
     await set(page, "plastic.thickness_mm", 0.7);
@@ -164,8 +155,9 @@ test("studio: release, cancel, release again, pick a strip, colour, take the rep
     await page.context().close();
 });
 
-test("studio: a mistake is said beside its setting, in the program's words, and mended there", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: a mistake is said beside its setting, in the program's words, and mended there", { timeout: 600000 }, async (t) => {
+    const { address } = await fresh(t);
+    const page = await open(address);
     await page.selectOption("#source", JSON.stringify({ generator: "radial" }));
     await set(page, "fabric.prestretch", 4);
     const said = page.locator('.row[data-key="fabric.prestretch"] .trouble');
@@ -181,8 +173,9 @@ test("studio: a mistake is said beside its setting, in the program's words, and 
     await page.context().close();
 });
 
-test("studio: thickness and side can be set per colour", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: thickness and side can be set per colour", { timeout: 600000 }, async (t) => {
+    const { address } = await fresh(t);
+    const page = await open(address);
     await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
     await page.waitForSelector('input[aria-label="thickness of #d9480f, mm"]');
     await page.fill('input[aria-label="thickness of #d9480f, mm"]', "1.1");
@@ -194,8 +187,9 @@ test("studio: thickness and side can be set per colour", { timeout: 600000 }, as
     await page.context().close();
 });
 
-test("studio: what the command line writes into the folder appears by itself", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: what the command line writes into the folder appears by itself", { timeout: 600000 }, async (t) => {
+    const { address, folder } = await fresh(t);
+    const page = await open(address);
     copyFileSync(torus, join(folder, "typed.svg"));
     const made = spawn(program, ["simulate", "typed.svg", "--quiet", "--set", "output.picture=false", "--set", "mesh.size_mm=2", "--set", "mesh.fabric_size_mm=3"], { cwd: folder });
     await new Promise((done) => made.on("exit", done));
@@ -205,7 +199,71 @@ test("studio: what the command line writes into the folder appears by itself", {
     await page.context().close();
 });
 
-test("studio: ten tabs are answered while a release runs", { timeout: 600000 }, async () => {
+test("studio: a scan that is dropped on a result is compared with it", { timeout: 600000 }, async (t) => {
+    const { address, folder } = await fresh(t);
+    const made = spawn(program, ["simulate", "torus.svg", "--quiet", ...["output.picture=false", "output.stl=true", "output.film_frames=0", "mesh.size_mm=2", "mesh.fabric_size_mm=3"].flatMap((set) => ["--set", set])], { cwd: folder });
+    await new Promise((done) => made.on("exit", done));
+    const page = await open(address);
+    await page.click('tr[data-folder="torus.out"] button.link');
+    await shown(page, "torus");
+    assert.equal(await page.locator("section.scan").count(), 0);
+    await page.setInputFiles("#made", join(folder, "torus.out", "shape.stl"));
+    await page.waitForSelector("section.scan", { timeout: 600000 });
+    assert.match(await page.locator("section.scan").textContent(), /mm, guessed from the sizes/);
+    assert.match(await page.locator(".legend p").first().textContent(), /mm$/);
+    assert.ok(existsSync(join(folder, "shape.stl")) && existsSync(join(folder, "torus.out", "compare.html")));
+    await screenshot(page, "studio-scan", { fullPage: true });
+    // What is no scan is said beside the field.
+    await page.setInputFiles("#made", torus);
+    await page.waitForSelector(".made-form .trouble:not([hidden])");
+    assert.match(await page.locator(".made-form .trouble").textContent(), /neither a scan/);
+    assert.deepEqual(page.troubles, []);
+    await page.context().close();
+});
+
+test("studio: a photo of a roll is compared by the circle around it, once a length in it is known", { timeout: 600000 }, async (t) => {
+    const { address, folder } = await fresh(t);
+    const made = spawn(program, ["simulate", "torus.svg", "--quiet", ...["output.picture=false", "output.film_frames=0", "mesh.size_mm=2", "mesh.fabric_size_mm=3"].flatMap((set) => ["--set", set])], { cwd: folder });
+    await new Promise((done) => made.on("exit", done));
+    const page = await open(address);
+    // A ring with a gap, 200 pixels in radius, and a ruler of 400 pixels above it, as the browser draws them.
+    const drawn = await page.evaluate(() => {
+        const paper = document.createElement("canvas");
+        [paper.width, paper.height] = [800, 600];
+        const ink = paper.getContext("2d");
+        ink.fillStyle = "#e8e4dc";
+        ink.fillRect(0, 0, 800, 600);
+        ink.lineWidth = 12;
+        ink.beginPath();
+        ink.arc(400, 340, 194, 0.4, 5.6);
+        ink.stroke();
+        ink.fillRect(200, 60, 400, 16);
+        return paper.toDataURL("image/jpeg", 0.9).split(",")[1];
+    });
+    await page.click('tr[data-folder="torus.out"] button.link');
+    await shown(page, "torus");
+    await page.setInputFiles("#made", { name: "My roll.JPG", mimeType: "image/jpeg", buffer: Buffer.from(drawn, "base64") });
+    const canvas = page.locator(".photo-marks canvas");
+    await canvas.scrollIntoViewIfNeeded();
+    const { width, height } = await canvas.boundingBox();
+    assert.ok(await page.locator(".photo-marks button").isDisabled());
+    for (const x of [200, 600]) await canvas.click({ position: { x: (x * width) / 800, y: (68 * height) / 600 } });
+    await page.fill("#known-length", "20");
+    await screenshot(page, "studio-photo-marks", { fullPage: true });
+    await page.click(".photo-marks button");
+    await page.waitForSelector("section.silhouette img", { timeout: 600000 });
+    // 400 pixels are 20 mm, pointed at to a pixel of the screen; the outer radius is 200 pixels.
+    const radius = Number((await page.locator("section.silhouette").textContent()).match(/radius in the photo([\d.]+) mm/)[1]);
+    assert.ok(Math.abs(radius - 10) < (0.1 * 800) / width, `${radius} mm`);
+    await page.waitForFunction(() => document.querySelector("section.silhouette img").naturalWidth > 0);
+    assert.ok(existsSync(join(folder, "My-roll.jpg")));
+    await screenshot(page, "studio-photo", { fullPage: true });
+    assert.deepEqual(page.troubles, []);
+    await page.context().close();
+});
+
+test("studio: ten tabs are answered while a release runs", { timeout: 600000 }, async (t) => {
+    const { address } = await fresh(t);
     const context = await browser.newContext({ viewport: desktop });
     context.setDefaultTimeout(600000);
     const pages = [];
@@ -218,7 +276,6 @@ test("studio: ten tabs are answered while a release runs", { timeout: 600000 }, 
     await pages[0].selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
     await pages[0].uncheck("#preview");
     await pages[0].waitForSelector(".layout .strip");
-    const known = (await runs()).length;
     await pages[0].click(".release");
     const times = [];
     for (const page of pages) {
@@ -232,17 +289,18 @@ test("studio: ten tabs are answered while a release runs", { timeout: 600000 }, 
     console.log(`answers in ten tabs: ${times.map((t) => t.toFixed(0)).join(", ")} ms`);
     // News reach the tabs that do not listen themselves.
     await pages[0].waitForSelector("section.result", { timeout: 600000 });
-    for (const page of pages) await page.waitForFunction((n) => document.querySelectorAll(".results tbody tr").length > n, known, { timeout: 600000 });
+    for (const page of pages) await page.waitForFunction((n) => document.querySelectorAll(".results tbody tr").length >= n, 1, { timeout: 600000 });
     // When the tab that listens is closed, another one takes over.
     await pages[0].close();
     await pages[5].waitForTimeout(500);
     await pages[5].click(".release");
-    await pages[9].waitForFunction((n) => document.querySelectorAll(".results tbody tr").length > n + 1, known, { timeout: 600000 });
+    await pages[9].waitForFunction((n) => document.querySelectorAll(".results tbody tr").length >= n, 2, { timeout: 600000 });
     await context.close();
 });
 
-test("studio: can be used from the keyboard alone", { timeout: 600000 }, async () => {
-    const page = await open();
+test("studio: can be used from the keyboard alone", { timeout: 600000 }, async (t) => {
+    const { address } = await fresh(t);
+    const page = await open(address);
     const reached = [];
     for (let i = 0; i < 40 && !reached.includes("release"); ++i) {
         await page.keyboard.press("Tab");
@@ -252,10 +310,11 @@ test("studio: can be used from the keyboard alone", { timeout: 600000 }, async (
     await page.context().close();
 });
 
-test("studio: on a phone nothing is wider than the screen; dark where the system is", { timeout: 600000 }, async () => {
+test("studio: on a phone nothing is wider than the screen; dark where the system is", { timeout: 600000 }, async (t) => {
+    const { address } = await fresh(t);
     const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
     for (const colorScheme of ["light", "dark"]) {
-        const page = await open({ ...phone, colorScheme });
+        const page = await open(address, { ...phone, colorScheme });
         await page.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
         await page.waitForSelector(".layout .strip");
         await idle(page);
@@ -265,7 +324,7 @@ test("studio: on a phone nothing is wider than the screen; dark where the system
         await screenshot(page, `studio-phone-${colorScheme}`, { fullPage: true });
         await page.context().close();
     }
-    const dark = await open({ colorScheme: "dark" });
+    const dark = await open(address, { colorScheme: "dark" });
     await dark.selectOption("#source", JSON.stringify({ svg: "torus.svg" }));
     await idle(dark);
     await dark.waitForTimeout(500);

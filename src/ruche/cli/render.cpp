@@ -38,15 +38,26 @@ const std::map<std::string, std::pair<double, double>> views = {{"front", {0, 0}
 bool is_animation(const RenderArguments& arguments) { return arguments.turntable || arguments.release; }
 
 std::string output_path(const RenderArguments& arguments) {
-    const std::string ending = is_animation(arguments) ? ".webp" : ".png";
     if (!arguments.output.empty()) {
-        if (std::filesystem::path(arguments.output).extension() != ending)
-            throw InputError({.key = "-o " + arguments.output}, "has another ending than " + ending,
-                             "Pictures are PNG files, animations (--turntable, --release) WebP files.");
+        const std::string ending = std::filesystem::path(arguments.output).extension();
+        const bool webp = is_animation(arguments) && ending == ".webp";
+        if (!webp && ending != ".png" && !(is_animation(arguments) && ending == ".apng"))
+            throw InputError({.key = "-o " + arguments.output},
+                             is_animation(arguments) ? "ends neither in .webp nor in .png or .apng"
+                                                     : "has another ending than .png",
+                             "Pictures are PNG files, films (--turntable, --release) WebP or animated PNG.");
         return arguments.output;
     }
-    const char* name = arguments.turntable ? "turntable" : arguments.release ? "release" : "render";
-    return (std::filesystem::path(arguments.folder) / (name + ending)).string();
+    const char* name = arguments.turntable ? "turntable.webp"
+                       : arguments.release ? "release.webp"
+                                           : "render.png";
+    return (std::filesystem::path(arguments.folder) / name).string();
+}
+
+Animation film_of(const RenderArguments& arguments) {
+    const bool webp = std::filesystem::path(output_path(arguments)).extension() == ".webp";
+    return {webp ? AnimationKind::webp : AnimationKind::png, arguments.portrait.width_px,
+            arguments.portrait.height_px};
 }
 
 PortraitOptions portrait_options(const RenderArguments& arguments) {
@@ -67,7 +78,7 @@ void must_go_on() {
 std::string turntable(const Result& result, const RenderArguments& arguments, ProgressDisplay& display) {
     const PortraitOptions options = portrait_options(arguments);
     const Portrait portrait(result, options);
-    Animation film(options.width_px, options.height_px);
+    Animation film = film_of(arguments);
     const int frames = arguments.frames > 0 ? arguments.frames : 60;
     for (int i = 0; i < frames; ++i) {
         must_go_on();
@@ -92,7 +103,7 @@ std::string release_film(Result& result, const RenderArguments& arguments, Progr
             "A film needs a converged shape on a drawing, or a mesh of at most 15000 triangles.");
     const PortraitOptions options = portrait_options(arguments);
     const Portrait portrait(result, options, way->frames);
-    Animation film(options.width_px, options.height_px);
+    Animation film = film_of(arguments);
     const std::size_t count = way->frames.size();
     const double each_ms = 500.0 * arguments.seconds / static_cast<double>(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -135,7 +146,8 @@ void add_render(CLI::App& program, Action& action) {
         ->type_name("RESULT");
     verb->add_option(
             "-o,--output", arguments->output,
-            "File to write: .png, or .webp for films; else RESULT/render.png, turntable.webp, release.webp")
+            "File to write: .png; for films .webp, or .png and .apng, which are larger and exact; else "
+            "RESULT/render.png, turntable.webp, release.webp")
         ->type_name("FILE");
     PortraitOptions& portrait = arguments->portrait;
     portrait.width_px = 1200;
@@ -161,7 +173,7 @@ void add_render(CLI::App& program, Action& action) {
         ->type_name("FIELD");
     verb->add_flag("--transparent", portrait.transparent, "Nothing behind the sheet but its shadow");
     CLI::Option* turntable =
-        verb->add_flag("--turntable", arguments->turntable, "Film: once around the shape, as animated WebP");
+        verb->add_flag("--turntable", arguments->turntable, "Film: once around the shape");
     verb->add_flag("--release", arguments->release,
                    "Film: from flat to released, through equilibria at growing pre-stretch")
         ->excludes(turntable);

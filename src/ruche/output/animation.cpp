@@ -5,70 +5,100 @@
 
 #include <stdexcept>
 
+#include "ruche/output/animated_png.hpp"
+
 namespace ruche {
 
 constexpr float quality = 88.0F;
 
-struct Animation::Encoder {
-    WebPAnimEncoder* handle = nullptr;
-    WebPConfig config = {};
-    int width = 0;
-    int height = 0;
-    int time_ms = 0;
-
+class Animation::Encoder {
+  public:
     Encoder() = default;
     Encoder(const Encoder&) = delete;
     Encoder& operator=(const Encoder&) = delete;
-    ~Encoder() { WebPAnimEncoderDelete(handle); }
+    virtual ~Encoder() = default;
 
-    [[noreturn]] void fail(const char* what) const {
-        const char* reason = handle != nullptr ? WebPAnimEncoderGetError(handle) : "";
-        throw std::runtime_error(std::string("cannot encode the animation: ") + what + " " + reason);
-    }
+    virtual void add(const Image& image, int milliseconds) = 0;
+    virtual std::string file() = 0;
 };
 
-Animation::Animation(int width, int height) : encoder_(std::make_unique<Encoder>()) {
-    encoder_->width = width;
-    encoder_->height = height;
-    WebPAnimEncoderOptions options;
-    if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&encoder_->config) == 0)
-        encoder_->fail("another version of libwebp was expected");
-    options.anim_params.loop_count = 0;  // over and over
-    encoder_->config.quality = quality;
-    encoder_->config.alpha_quality = 100;
-    encoder_->handle = WebPAnimEncoderNew(width, height, &options);
-    if (encoder_->handle == nullptr) encoder_->fail("the size is not possible");
+class Animation::Webp : public Encoder {
+  public:
+    Webp(int width, int height) : width_(width), height_(height) {
+        WebPAnimEncoderOptions options;
+        if (WebPAnimEncoderOptionsInit(&options) == 0 || WebPConfigInit(&config_) == 0)
+            fail("another version of libwebp was expected");
+        options.anim_params.loop_count = 0;  // over and over
+        config_.quality = quality;
+        config_.alpha_quality = 100;
+        handle_ = WebPAnimEncoderNew(width, height, &options);
+        if (handle_ == nullptr) fail("the size is not possible");
+    }
+    Webp(const Webp&) = delete;
+    Webp& operator=(const Webp&) = delete;
+    ~Webp() override { WebPAnimEncoderDelete(handle_); }
+
+    void add(const Image& image, int milliseconds) override {
+        WebPPicture picture;
+        if (WebPPictureInit(&picture) == 0) fail("another version of libwebp was expected");
+        picture.use_argb = 1;
+        picture.width = width_;
+        picture.height = height_;
+        const std::vector<unsigned char> pixels = rgba(image);
+        const bool added = WebPPictureImportRGBA(&picture, pixels.data(), 4 * picture.width) != 0 &&
+                           WebPAnimEncoderAdd(handle_, &picture, time_ms_, &config_) != 0;
+        WebPPictureFree(&picture);
+        if (!added) fail("a frame was refused:");
+        time_ms_ += milliseconds;
+    }
+
+    std::string file() override {
+        WebPData data;
+        WebPDataInit(&data);
+        const bool done = WebPAnimEncoderAdd(handle_, nullptr, time_ms_, nullptr) != 0 &&
+                          WebPAnimEncoderAssemble(handle_, &data) != 0;
+        if (!done) {
+            WebPDataClear(&data);
+            fail("the file could not be put together:");
+        }
+        std::string bytes(reinterpret_cast<const char*>(data.bytes), data.size);
+        WebPDataClear(&data);
+        return bytes;
+    }
+
+  private:
+    [[noreturn]] void fail(const char* what) const {
+        const char* reason = handle_ != nullptr ? WebPAnimEncoderGetError(handle_) : "";
+        throw std::runtime_error(std::string("cannot encode the animation: ") + what + " " + reason);
+    }
+
+    WebPAnimEncoder* handle_ = nullptr;
+    WebPConfig config_ = {};
+    int width_ = 0;
+    int height_ = 0;
+    int time_ms_ = 0;
+};
+
+class Animation::Apng : public Encoder {
+  public:
+    void add(const Image& image, int milliseconds) override { png_.add(image, milliseconds); }
+    std::string file() override { return png_.file(); }
+
+  private:
+    AnimatedPng png_;
+};
+
+Animation::Animation(AnimationKind kind, int width, int height) {
+    if (kind == AnimationKind::webp)
+        encoder_ = std::make_unique<Webp>(width, height);
+    else
+        encoder_ = std::make_unique<Apng>();
 }
 
 Animation::~Animation() = default;
 
-void Animation::add(const Image& image, int milliseconds) {
-    WebPPicture picture;
-    if (WebPPictureInit(&picture) == 0) encoder_->fail("another version of libwebp was expected");
-    picture.use_argb = 1;
-    picture.width = encoder_->width;
-    picture.height = encoder_->height;
-    const std::vector<unsigned char> pixels = rgba(image);
-    const bool added =
-        WebPPictureImportRGBA(&picture, pixels.data(), 4 * picture.width) != 0 &&
-        WebPAnimEncoderAdd(encoder_->handle, &picture, encoder_->time_ms, &encoder_->config) != 0;
-    WebPPictureFree(&picture);
-    if (!added) encoder_->fail("a frame was refused:");
-    encoder_->time_ms += milliseconds;
-}
+void Animation::add(const Image& image, int milliseconds) { encoder_->add(image, milliseconds); }
 
-std::string Animation::file() {
-    WebPData data;
-    WebPDataInit(&data);
-    const bool done = WebPAnimEncoderAdd(encoder_->handle, nullptr, encoder_->time_ms, nullptr) != 0 &&
-                      WebPAnimEncoderAssemble(encoder_->handle, &data) != 0;
-    if (!done) {
-        WebPDataClear(&data);
-        encoder_->fail("the file could not be put together:");
-    }
-    std::string bytes(reinterpret_cast<const char*>(data.bytes), data.size);
-    WebPDataClear(&data);
-    return bytes;
-}
+std::string Animation::file() { return encoder_->file(); }
 
 }  // namespace ruche

@@ -7,12 +7,15 @@
 
 namespace ruche {
 
-/// Writes an animated WebP, which browsers, chats and slides play, over and over (libwebp, lossy at a quality
-/// at which nobody sees it).
+/// Kinds of films: WebP is lossy at a quality at which nobody sees it (libwebp) and smaller, animated
+/// PNG is lossless and played by programs that do not know WebP.
+enum class AnimationKind { webp, png };
+
+/// Writes a film that browsers, chats and slides play, over and over.
 class Animation {
   public:
     /// All images have this size. Throws std::runtime_error when the encoder does not take it.
-    Animation(int width, int height);
+    Animation(AnimationKind kind, int width, int height);
     ~Animation();
     Animation(const Animation&) = delete;
     Animation& operator=(const Animation&) = delete;
@@ -24,7 +27,9 @@ class Animation {
     std::string file();
 
   private:
-    struct Encoder;
+    class Encoder;
+    class Webp;
+    class Apng;
     std::unique_ptr<Encoder> encoder_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "ruche/core/error.hpp"
 #include "ruche/output/little_endian.hpp"
 
 namespace ruche {
@@ -75,8 +76,10 @@ void PackedArrays::add_relative(const std::string& name, std::span<const double>
     }
 }
 
+static constexpr std::string_view base64_letters =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 std::string base64(const std::string& bytes) {
-    static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     text.reserve((bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
@@ -84,9 +87,27 @@ std::string base64(const std::string& bytes) {
         std::uint32_t word = 0;
         for (std::size_t k = 0; k < 3; ++k)
             word = word << 8U | (k < left ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-        for (std::size_t k = 0; k < 4; ++k) text += k <= left ? letters[word >> (18 - 6 * k) & 63U] : '=';
+        for (std::size_t k = 0; k < 4; ++k)
+            text += k <= left ? base64_letters[word >> (18 - 6 * k) & 63U] : '=';
     }
     return text;
+}
+
+std::string from_base64(const std::string& text) {
+    const std::size_t end = std::min(text.find('='), text.size());
+    bool sound = text.size() % 4 == 0 && text.size() - end <= 2 && end % 4 != 1 &&
+                 text.find_first_not_of('=', end) == std::string::npos;
+    std::string bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < end && sound; ++i) {
+        const std::size_t digit = base64_letters.find(text[i]);
+        sound = digit != std::string_view::npos;
+        word = word << 6U | static_cast<std::uint32_t>(digit);
+        if (i % 4 != 0) bytes += static_cast<char>(word >> (6 - 2 * (i % 4)) & 255U);
+    }
+    if (!sound) throw InputError({}, "these bytes are not in base64 (RFC 4648)");
+    return bytes;
 }
 
 }  // namespace ruche

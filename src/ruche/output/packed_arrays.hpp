@@ -43,7 +43,8 @@ class PackedArrays {
     std::string bytes_;
 };
 
-/// Bytes as text (RFC 4648).
+/// Bytes as text (RFC 4648), and back. The second throws InputError for what is none.
 std::string base64(const std::string& bytes);
+std::string from_base64(const std::string& text);
 
 }  // namespace ruche

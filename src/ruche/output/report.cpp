@@ -183,7 +183,8 @@ Json levels_of(const Equilibrium& equilibrium) {
     for (const LevelEffort& level : equilibrium.levels) {
         levels.push_back({{"triangles", level.triangles},
                           {"iterations", level.iterations},
-                          {"factorizations", level.factorizations}});
+                          {"factorizations", level.factorizations},
+                          {"residuals_N", level.residuals}});
     }
     return levels;
 }

@@ -38,7 +38,8 @@ static Equilibrium timed_solve(const Model& model, const SolveOptions& options, 
     result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     result.levels = {{.triangles = model.input().mesh.triangle_count(),
                       .iterations = result.iterations,
-                      .factorizations = result.factorizations}};
+                      .factorizations = result.factorizations,
+                      .residuals = result.residuals}};
     return result;
 }
 

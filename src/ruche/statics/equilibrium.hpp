@@ -44,6 +44,7 @@ struct LevelEffort {
     int triangles = 0;
     int iterations = 0;
     int factorizations = 0;
+    std::vector<double> residuals;  ///< N, before each iteration and at the end
 };
 
 struct Equilibrium {
@@ -55,6 +56,7 @@ struct Equilibrium {
     double typical_force = 0.0;  ///< to compare it with: rms over elements of the internal nodal force, N
     int iterations = 0;          ///< on this mesh
     int factorizations = 0;
+    std::vector<double> residuals;    ///< N, before each iteration and at the end
     std::vector<LevelEffort> levels;  ///< from the coarsest mesh to this one
     double seconds = 0.0;             ///< of all levels
     double log_extension = 0.0;       ///< of the law that it is an equilibrium of

@@ -249,6 +249,7 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
     result.typical_force = model().typical_force(x_);
     result.iterations = iterations_;
     result.factorizations = system_.factorizations();
+    result.residuals = residuals_;
     result.health = model().health(x_);
     result.health.tangled = !tangle(result.health).empty();
     result.log_extension = model().input().options.log_extension;
@@ -302,6 +303,7 @@ void Newton::iterate(Equilibrium& result) {
         report();
         if (is_good(x_)) last_good_ = x_;
         result.residual = residual();
+        residuals_.push_back(result.residual);
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {
             result.message = "the start is not a possible shape: its energy is not finite";
             return;

@@ -88,6 +88,7 @@ class Newton {
     bool halved_ = false;         // the last line search had to
     double rotation_ = infinity;  // rms of the last step
     int iterations_ = 0;
+    std::vector<double> residuals_;  // of all runs
     bool wary_ = false;
     Eigen::VectorXd last_good_;
 };

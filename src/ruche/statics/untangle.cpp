@@ -36,6 +36,7 @@ Equilibrium solve_around_tangles(const Eigen::VectorXd& start, const Reruns& rer
     first.message = "tangled: " + knot + "; small steps did not lead around it";
     first.iterations = next.iterations;  // of all runs
     first.factorizations = next.factorizations;
+    first.residuals = next.residuals;
     return first;
 }
 

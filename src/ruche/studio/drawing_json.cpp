@@ -183,7 +183,8 @@ std::string form_json(const Workspace& workspace) {
                    {"generators", described_generators()},
                    {"cards", described_cards(workspace)},
                    {"drawings", workspace.drawings()},
-                   {"scenes", workspace.scenes()}});
+                   {"scenes", workspace.scenes()},
+                   {"scans", workspace.scans()}});
 }
 
 }  // namespace ruche

@@ -5,6 +5,8 @@
 #include "ruche/output/result_folder.hpp"
 #include "ruche/scene/preview.hpp"
 #include "ruche/scene/simulate.hpp"
+#include "ruche/study/scan/scan_files.hpp"
+#include "ruche/study/silhouette/silhouette_files.hpp"
 
 namespace ruche {
 
@@ -27,6 +29,15 @@ std::string run_release(const JobOrder& order, const Workspace& workspace, const
     add_film(result, control);
     (void)write_result(result, folder, control);
     return std::string(name_of(result.equilibrium.status));
+}
+
+void run_comparison(const JobOrder& order, const Workspace& workspace, const Control& control) {
+    const std::string folder = workspace.inside(order.folder).string();
+    const std::string made = workspace.inside(order.made).string();
+    if (order.photo)
+        (void)compare_silhouette_files(folder, made, folder, *order.photo);
+    else
+        (void)compare_files(folder, made, folder, {.unit = order.unit}, control);
 }
 
 }  // namespace ruche

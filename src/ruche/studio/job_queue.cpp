@@ -18,7 +18,7 @@ struct JobQueue::Job {
     std::atomic<bool> stop = false;
     std::string phase;
     std::string text;
-    std::string outcome;  // of a release: "converged", ...
+    std::string outcome;  // of a release: "converged", ...; of a comparison "compared"
     std::string error;    // JSON
     TimeLeft time_left;
     Clock::time_point begin;
@@ -28,11 +28,14 @@ struct JobQueue::Job {
     bool waits() const { return state == "waiting"; }
     bool runs() const { return state == "running"; }
     bool is_preview() const { return order.kind == JobKind::preview; }
+    const char* kind_name() const {
+        return is_preview() ? "preview" : order.kind == JobKind::release ? "release" : "comparison";
+    }
 
     Json json() const {
         Json json = {
             {"id", id},
-            {"kind", is_preview() ? "preview" : "release"},
+            {"kind", kind_name()},
             {"owner", order.owner},
             {"state", state},
             {"folder", order.folder},
@@ -71,7 +74,7 @@ int JobQueue::add(JobOrder order) {
     std::vector<std::string> taken;
     for (const auto& job : jobs_) {
         if (job->waits() || job->runs()) taken.push_back(job->order.folder);
-        const bool replaced = order.kind == JobKind::release ? job->runs() : job->order.owner == order.owner;
+        const bool replaced = order.kind != JobKind::preview ? job->runs() : job->order.owner == order.owner;
         if (!job->is_preview() || !replaced) continue;
         job->stop = true;
         if (job->waits()) change(*job, "cancelled");
@@ -113,7 +116,7 @@ void JobQueue::tell(const Job& job) {
     log_.publish("job", job.json().dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
-/// Releases before previews.
+/// Previews after all else.
 JobQueue::Job* JobQueue::next() {
     for (const bool preview : {false, true})
         for (const auto& job : jobs_)
@@ -165,10 +168,18 @@ void JobQueue::run(Job& job) {
     std::string outcome;
     std::string error;
     try {
-        if (job.is_preview())
-            run_preview(job.order, control_of(job));
-        else
-            outcome = run_release(job.order, workspace_, control_of(job));
+        switch (job.order.kind) {
+            case JobKind::preview:
+                run_preview(job.order, control_of(job));
+                break;
+            case JobKind::release:
+                outcome = run_release(job.order, workspace_, control_of(job));
+                break;
+            case JobKind::comparison:
+                run_comparison(job.order, workspace_, control_of(job));
+                outcome = "compared";
+                break;
+        }
     } catch (...) {
         error = current_error_json();
     }

@@ -26,8 +26,8 @@ class JobQueue {
     JobQueue& operator=(const JobQueue&) = delete;
 
     /// Returns the job's number. A preview takes the place of its owner's earlier one, and waits while there
-    /// are releases to do. A release gets a folder of its own (`order.folder` is its name) and stops running
-    /// previews. Throws InputError when too many wait.
+    /// are others to do. A release gets a folder of its own (`order.folder` is its name). What is no preview
+    /// stops running ones. Throws InputError when too many wait.
     int add(JobOrder order);
 
     /// Stops a running job at its next step, takes a waiting one away.

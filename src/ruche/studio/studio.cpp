@@ -8,6 +8,7 @@
 
 #include "ruche/core/document.hpp"
 #include "ruche/core/error.hpp"
+#include "ruche/output/packed_arrays.hpp"
 #include "ruche/output/page_template.hpp"
 #include "ruche/studio/error_json.hpp"
 #include "ruche/studio/http_server.hpp"
@@ -91,6 +92,7 @@ class Studio {
         if (request.path == "/api/upload") return upload(request);
         if (request.path == "/api/release") return start(request, JobKind::release);
         if (request.path == "/api/preview") return start(request, JobKind::preview);
+        if (request.path == "/api/compare") return compare(request);
         if (request.path == "/api/cancel") {
             queue_.cancel(Json::parse(request.body).at("id").get<int>());
             return {.body = "{}"};
@@ -125,12 +127,44 @@ class Studio {
         return {.body = Json{{"id", queue_.add(std::move(order))}}.dump()};
     }
 
+    /// {"run": "torus.out", "made": "scan.stl", "unit": ""}; a photo has "photo": {"known_length_mm": 50,
+    /// "known_length_at_px": [x, y, x, y], "seen_along_deg": 90} instead of a unit. With "bytes", in base64,
+    /// the file is written first.
+    HttpReply compare(const HttpRequest& request) {
+        const Json given = Json::parse(request.body);
+        JobOrder order{.kind = JobKind::comparison,
+                       .owner = given.value("owner", ""),
+                       .folder = given.at("run").get<std::string>(),
+                       .made = given.at("made").get<std::string>(),
+                       .unit = given.value("unit", "")};
+        if (given.contains("photo")) {
+            const Json& photo = given.at("photo");
+            order.photo = SilhouetteOptions{
+                .known_length_mm = photo.at("known_length_mm").get<double>(),
+                .known_length_at_px = photo.at("known_length_at_px").get<std::vector<double>>(),
+                .box = {},
+                .seen_along_deg = photo.value("seen_along_deg", 90.0)};
+        }
+        if (!fs::exists(workspace_.inside(order.folder + "/report.json")))
+            throw InputError({}, "there is no result " + order.folder, "Choose one of the list.");
+        (void)scene_from_request(scene_of(order.folder), workspace_);  // its files lie in the folder, too
+        if (given.contains("bytes"))
+            order.made =
+                workspace_.keep_measured(order.made, from_base64(given.at("bytes").get<std::string>()));
+        else
+            (void)workspace_.inside(order.made);
+        const std::string made = order.made;
+        return {.body = Json{{"id", queue_.add(std::move(order))}, {"made", made}}.dump()};
+    }
+
     std::string runs_json() {
         Json list = Json::array();
         for (const RunEntry& run : workspace_.runs())
             list.push_back({{"folder", run.folder},
                             {"written", run.written},
                             {"page", run.page},
+                            {"compared", run.compared},
+                            {"photographed", run.photographed},
                             {"summary", Json::parse(run.summary)}});
         return list.dump(-1, ' ', false, Json::error_handler_t::replace);
     }
@@ -140,11 +174,14 @@ class Studio {
         return workspace_.inside((run == request.query.end() ? "" : run->second) + "/state.ruche").string();
     }
 
+    static std::string scene_of(const fs::path& run) {
+        return Json{{"base", {{"scene", (run / "scene.toml").string()}}}}.dump();
+    }
+
     /// The drawing that a result was made from, which lies elsewhere or in the generator.
     HttpReply drawing_of(const fs::path& run) const {
-        const Json request = {{"base", {{"scene", (run / "scene.toml").string()}}}};
         return {.type = "image/svg+xml",
-                .body = drawing_svg(scene_from_request(request.dump(), workspace_)),
+                .body = drawing_svg(scene_from_request(scene_of(run), workspace_)),
                 .download = run.stem().string() + ".svg"};
     }
 

@@ -17,9 +17,11 @@ namespace ruche {
 namespace fs = std::filesystem;
 
 static constexpr int deepest = 3;
-static constexpr std::array result_files = {"report.html", "report.json", "scene.toml", "shape.obj",
-                                            "shape.mtl",   "shape.glb",   "shape.stl",  "shape.ply",
-                                            "shape.vtu",   "picture.png"};
+static constexpr std::array result_files = {
+    "report.html", "report.json", "scene.toml",  "shape.obj",    "shape.mtl",    "shape.glb",     "shape.stl",
+    "shape.ply",   "shape.vtu",   "picture.png", "compare.html", "compare.json", "silhouette.png"};
+static constexpr std::array scan_endings = {".obj", ".ply", ".stl"};
+static constexpr std::array photo_endings = {".png", ".jpg", ".jpeg"};
 
 Workspace::Workspace(const std::string& folder) {
     std::error_code failed;
@@ -74,6 +76,13 @@ std::vector<std::string> Workspace::drawings() const { return names(root_, ".svg
 std::vector<std::string> Workspace::scenes() const { return names_with_entry(root_, "pattern"); }
 std::vector<std::string> Workspace::cards() const { return names_with_entry(root_, "set"); }
 
+std::vector<std::string> Workspace::scans() const {
+    std::vector<std::string> found;
+    for (const char* ending : scan_endings)
+        for (std::string& name : names(root_, ending)) found.push_back(std::move(name));
+    return found;
+}
+
 std::vector<RunEntry> Workspace::runs() {
     const std::scoped_lock lock(mutex_);
     std::vector<RunEntry> list;
@@ -106,13 +115,18 @@ std::vector<RunEntry> Workspace::runs() {
     }
     known_ = std::move(known);
     list.reserve(known_.size());
-    for (const auto& [folder, run] : known_) list.push_back(run.entry);
+    for (const auto& [folder, run] : known_) {
+        list.push_back(run.entry);
+        std::error_code ignored;
+        list.back().compared = fs::is_regular_file(root_ / folder / "compare.html", ignored);
+        list.back().photographed = fs::is_regular_file(root_ / folder / "silhouette.png", ignored);
+    }
     std::sort(list.begin(), list.end(),
               [](const RunEntry& a, const RunEntry& b) { return a.written > b.written; });
     return list;
 }
 
-static std::string clean_stem(const std::string& wanted) {
+static std::string clean_stem(const std::string& wanted, const char* otherwise) {
     std::string stem;
     for (const char c : fs::path(wanted).stem().string()) {
         const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
@@ -125,32 +139,50 @@ static std::string clean_stem(const std::string& wanted) {
     constexpr std::size_t longest = 60;
     stem.resize(std::min(stem.size(), longest));
     while (stem.ends_with('-')) stem.pop_back();
-    return stem.empty() ? "drawing" : stem;
+    return stem.empty() ? otherwise : stem;
 }
 
 std::string Workspace::keep_drawing(const std::string& wanted, const std::string& text) const {
     if (text.find("<svg") == std::string::npos && text.find(":svg") == std::string::npos)
         throw InputError({.file = wanted}, "is not an SVG drawing",
                          "Save it as SVG: Inkscape, Illustrator and Rhino all do.");
-    const std::string stem = clean_stem(wanted);
+    return keep(clean_stem(wanted, "drawing"), ".svg", text);
+}
+
+std::string Workspace::keep_measured(const std::string& wanted, const std::string& bytes) const {
+    std::string ending = fs::path(wanted).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+    const auto is_one_of = [&](const auto& endings) {
+        return std::find(endings.begin(), endings.end(), ending) != endings.end();
+    };
+    if (is_one_of(photo_endings)) return keep(clean_stem(wanted, "photo"), ending, bytes);
+    if (is_one_of(scan_endings)) return keep(clean_stem(wanted, "scan"), ending, bytes);
+    throw InputError({.file = wanted}, "is neither a scan (OBJ, PLY, STL) nor a photo (PNG, JPEG)",
+                     "Every scanner's program can save one of these.");
+}
+
+std::string Workspace::keep(const std::string& stem, const std::string& ending,
+                            const std::string& bytes) const {
     for (int number = 1;; ++number) {
-        const std::string name = number == 1 ? stem + ".svg" : fmt::format("{}-{}.svg", stem, number);
+        const std::string name = number == 1 ? stem + ending : fmt::format("{}-{}{}", stem, number, ending);
         const fs::path path = root_ / name;
         std::error_code ignored;
         if (fs::exists(fs::symlink_status(path, ignored))) {
             constexpr std::size_t longest = 64U << 20U;
             if (!fs::is_regular_file(fs::symlink_status(path, ignored)) ||
-                read_file(path.string(), "drawing", longest) != text)
+                fs::file_size(path, ignored) != bytes.size() ||
+                read_file(path.string(), "file", longest) != bytes)
                 continue;
             return name;
         }
-        write_file_atomically(path.string(), text);
+        write_file_atomically(path.string(), bytes);
         return name;
     }
 }
 
 std::string Workspace::new_result(const std::string& name, const std::vector<std::string>& taken) const {
-    const std::string stem = clean_stem(name);
+    const std::string stem = clean_stem(name, "drawing");
     for (int number = 1;; ++number) {
         const std::string folder = number == 1 ? stem + ".out" : fmt::format("{}-{}.out", stem, number);
         std::error_code ignored;

@@ -17,10 +17,12 @@ class OutsideFolder : public std::runtime_error {
 
 /// A result that lies in the folder, whoever wrote it.
 struct RunEntry {
-    std::string folder;   ///< relative: "torus.out"
-    double written = 0;   ///< seconds since 1970
-    std::string summary;  ///< JSON object: status, stable, box_size_mm, strips' curvatures, settings, ...
-    bool page = false;    ///< whether there is a report.html
+    std::string folder;     ///< relative: "torus.out"
+    double written = 0;     ///< seconds since 1970
+    std::string summary;    ///< JSON object: status, stable, box_size_mm, strips' curvatures, settings, ...
+    bool page = false;      ///< whether there is a report.html
+    bool compared = false;  ///< whether there is a compare.html, of a scan
+    bool photographed = false;  ///< whether there is a silhouette.png
 };
 
 /// The folder that the studio works in: drawings, scene files and results, which the command line reads and
@@ -40,6 +42,8 @@ class Workspace {
     std::vector<std::string> scenes() const;
     /// Material cards in the folder.
     std::vector<std::string> cards() const;
+    /// Scans (.obj, .ply, .stl) in the folder itself; those in results are shapes.
+    std::vector<std::string> scans() const;
 
     /// All results, in folders up to three levels down; latest first.
     std::vector<RunEntry> runs();
@@ -49,6 +53,9 @@ class Workspace {
     /// text that cannot be a drawing.
     std::string keep_drawing(const std::string& wanted, const std::string& text) const;
 
+    /// The same with an uploaded scan or photo, whose contents are looked at when it is used.
+    std::string keep_measured(const std::string& wanted, const std::string& bytes) const;
+
     /// A name for the folder of a new result: "torus.out", "torus-2.out", ... none of `taken`.
     std::string new_result(const std::string& name, const std::vector<std::string>& taken) const;
 
@@ -56,6 +63,8 @@ class Workspace {
     std::filesystem::path served_file(const std::string& relative) const;
 
   private:
+    std::string keep(const std::string& stem, const std::string& ending, const std::string& bytes) const;
+
     struct Known {
         std::filesystem::file_time_type time;
         RunEntry entry;

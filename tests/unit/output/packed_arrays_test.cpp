@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include "ruche/core/error.hpp"
 
 using namespace ruche;
 
@@ -83,4 +84,8 @@ TEST_CASE("base64: the test vectors of RFC 4648, and bytes above 127") {
     CHECK(base64("foo") == "Zm9v");
     CHECK(base64("foobar") == "Zm9vYmFy");
     CHECK(base64("\xff\xfe\xfd") == "//79");
+    for (const std::string text : {"", "f", "fo", "foo", "foobar", "\xff\xfe\xfd"})
+        CHECK(from_base64(base64(text)) == text);
+    for (const char* wrong : {"Zg", "Zg=", "Zg==Zg==", "Z===", "Zm9v!A==", "Zm9v\n", "A"})
+        CHECK_THROWS_AS((void)from_base64(wrong), InputError);
 }

@@ -66,7 +66,7 @@ TEST_CASE("portrait: walking around, looking from above and colouring each chang
 }
 
 TEST_CASE("animation: a WebP with a frame for each picture") {
-    Animation film(96, 80);
+    Animation film(AnimationKind::webp, 96, 80);
     const Result result = sample::rolled_sheet();
     const Portrait portrait(result, small_portrait);
     for (const double turn : {0.0, 40.0, 80.0}) film.add(portrait.released(turn), 50);

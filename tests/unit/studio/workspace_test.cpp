@@ -78,6 +78,21 @@ TEST_CASE("workspace: an uploaded drawing gets a plain name and never replaces a
     CHECK_THROWS_AS((void)workspace.keep_drawing("x.svg", "hello"), InputError);
 }
 
+TEST_CASE(
+    "workspace: a scan keeps its kind of file and a plain name, and is listed; a result's shape is not") {
+    const Neighbourhood place;
+    const Workspace workspace(place.work());
+    CHECK(workspace.scans().empty());
+    CHECK(workspace.keep_measured("../my scan.PLY", "ply") == "my-scan.ply");
+    CHECK(workspace.keep_measured("my scan.ply", "ply") == "my-scan.ply");
+    CHECK(workspace.keep_measured("my scan.ply", "other") == "my-scan-2.ply");
+    CHECK(workspace.keep_measured("??.stl", "solid") == "scan.stl");
+    CHECK(workspace.keep_measured("IMG 1.JPG", "jpeg") == "IMG-1.jpg");
+    CHECK(workspace.scans() == std::vector<std::string>{"my-scan-2.ply", "my-scan.ply", "scan.stl"});
+    CHECK_THROWS_AS((void)workspace.keep_measured("scan.svg", "<svg/>"), InputError);
+    CHECK_THROWS_AS((void)workspace.keep_measured("scan", ""), InputError);
+}
+
 TEST_CASE("workspace: a new result gets a folder that is neither there nor promised") {
     const Neighbourhood place;
     const Workspace workspace(place.work());

@@ -22,6 +22,14 @@ export interface AlternativeShape {
     found_from: string[];
 }
 
+/** What the solve on one mesh took; residuals before each iteration and at the end. */
+export interface Level {
+    triangles: number;
+    iterations: number;
+    factorizations: number;
+    residuals_N: (number | null)[];
+}
+
 export interface Report {
     status: "converged" | "not_converged" | "interrupted";
     stable: boolean;
@@ -34,7 +42,7 @@ export interface Report {
         iterations: number;
         factorizations: number;
         seconds: number;
-        levels: { triangles: number; iterations: number; factorizations: number }[];
+        levels: Level[];
     };
     health: {
         max_strain_margin: number | null;

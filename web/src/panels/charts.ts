@@ -1,6 +1,6 @@
 import * as Plot from "@observablehq/plot";
 
-import type { Report } from "../data/report";
+import type { Level, Parameter, Report } from "../data/report";
 import type { Result } from "../data/result";
 import { h, number, seconds } from "../dom";
 import type { Attention } from "../signal";
@@ -119,15 +119,43 @@ export function energy({ report }: Result): HTMLElement {
     );
 }
 
+/** The largest force left over before every iteration, each mesh in its own shade, the finest darkest. */
+function residuals(levels: Level[], tolerance: number | undefined): HTMLElement | undefined {
+    let iteration = 0;
+    const points = levels.flatMap((level, i) =>
+        level.residuals_N.map((residual) => ({ residual, iteration: iteration++, level: i })).filter((p): p is typeof p & { residual: number } => p.residual !== null && p.residual > 0),
+    );
+    if (points.length < 2) return undefined;
+    return responsive("Residual over the iterations, logarithmic", (width) =>
+        Plot.plot({
+            width,
+            height: 170,
+            marginLeft: 48,
+            marginBottom: 38,
+            x: { label: "iteration", tickFormat: (v: number) => (Number.isInteger(v) ? String(v) : "") },
+            y: { type: "log", label: "residual, N", grid: true, ticks: 5, tickFormat: (v: number) => v.toExponential(0) },
+            marks: [
+                tolerance ? Plot.ruleY([tolerance], { stroke: "currentColor", strokeDasharray: "3,3" }) : undefined,
+                Plot.line(points, { x: "iteration", y: "residual", z: "level", stroke: "var(--honey)", strokeWidth: 2, strokeOpacity: (p: { level: number }) => (p.level + 1) / levels.length }),
+                Plot.dot(points, { x: "iteration", y: "residual", r: 2.5, fill: "var(--honey)", fillOpacity: (p: { level: number }) => (p.level + 1) / levels.length }),
+            ],
+        }),
+    );
+}
+
 export function convergence({ report }: Result): HTMLElement {
     const { solver } = report;
     const time = Object.entries(report.seconds).map(([key, value]) => ({ label: phases[key] ?? key, value }));
     time.sort((a, b) => b.value - a.value);
+    const tolerance = (report.parameters["solver"] as Record<string, Parameter> | undefined)?.["residual_tolerance_n"]?.value;
+    const chart = residuals(solver.levels, typeof tolerance === "number" ? tolerance : undefined);
     return h(
         "section",
         { class: "card" },
         h("h2", {}, "Convergence and time"),
         h("p", {}, verdict(report)),
+        chart ?? "",
+        chart ? h("p", { class: "hint" }, "Largest force left over before every iteration; one line a mesh, the finest one darkest; dashed: where a solve may stop.") : "",
         h(
             "table",
             { class: "plain" },

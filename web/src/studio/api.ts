@@ -23,6 +23,7 @@ export interface Form {
     cards: { name: string; description: string }[];
     drawings: string[];
     scenes: string[];
+    scans: string[];
 }
 
 export interface Rule {
@@ -62,7 +63,7 @@ export interface Trouble {
 
 export interface Job {
     id: number;
-    kind: "preview" | "release";
+    kind: "preview" | "release" | "comparison";
     owner: string;
     state: "waiting" | "running" | "done" | "failed" | "cancelled";
     folder: string;
@@ -79,6 +80,8 @@ export interface Run {
     folder: string;
     written: number;
     page: boolean;
+    compared: boolean;
+    photographed: boolean;
     summary: {
         status: string;
         stable: boolean;

@@ -109,6 +109,7 @@ export class LiveView {
         }
         if (shape.iteration === 0 && shape.residual_N === null) this.view.look("home");
         this.view.makeRoom();
+        Object.assign(this.element.dataset, { job: shape.job, iteration: shape.iteration });  // which shape is seen
         if (shape.history.length > 1) this.chart.replaceChildren(residualChart(shape.history), h("span", {}, `step ${shape.history.length}, ${shape.triangles.toLocaleString("en")} triangles, residual ${number(shape.residual_N, 2)} N`));
     }
 

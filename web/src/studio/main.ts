@@ -3,6 +3,7 @@ import "./studio.css";
 import { resultInDocument, type Result } from "../data/result";
 import { h } from "../dom";
 import { header } from "../panels/header";
+import { scanComparison } from "../panels/scan_comparison";
 import { stripTable } from "../panels/strips";
 import { distribution } from "../panels/charts";
 import { attention } from "../signal";
@@ -13,7 +14,9 @@ import { listen } from "./events";
 import { LayoutView } from "./layout_view";
 import { LiveView } from "./live_view";
 import { downloads, nameOf, ResultList } from "./results";
+import { isMeasured, MadeForm } from "./made_form";
 import { Settings } from "./settings";
+import { silhouette, type Silhouette } from "./silhouette";
 
 const changePauseMs = 250;
 /** What a release writes unless the person says otherwise: the page shows the shape itself, sooner without a picture. */
@@ -34,6 +37,7 @@ class Studio {
     private readonly goOn = h("select", { "aria-label": "begin with" });
     private readonly jobs = new Map<number, Job>();
     private runs: Run[] = [];
+    private made: MadeForm | undefined;  // of the result that is shown
     private mine: number | undefined;  // the job whose shape is shown
     private timer = 0;
     private asked = 0;
@@ -136,7 +140,10 @@ class Studio {
             event.preventDefault();
             document.body.classList.remove("dragging");
             const [file] = event.dataTransfer?.files ?? [];
-            if (file) void this.upload(file);
+            if (!file) return;
+            if (!isMeasured(file)) void this.upload(file);
+            else if (this.made && this.place.contains(this.made.element)) void this.made.take(file);
+            else this.say({ message: `${file.name} shows what was made: open the result that it is to be compared with, and drop it again.` });
         });
     }
 
@@ -162,23 +169,25 @@ class Studio {
         void this.refreshShape();
     }
 
-    private async load(run: Run): Promise<Result> {
+    private async load(run: Run, page: "report.html" | "compare.html" = "report.html"): Promise<Result> {
         if (!run.page) throw new ServerError({ message: `${nameOf(run)} has no report.html: it was written with output.page = false, or by a program without the page.` });
-        const page = await text(fileAddress(run.folder, "report.html"));
-        return resultInDocument(new DOMParser().parseFromString(page, "text/html"));
+        const written = await text(fileAddress(run.folder, page));
+        return resultInDocument(new DOMParser().parseFromString(written, "text/html"));
     }
 
-    private async open(run: Run): Promise<void> {
+    private async open(run: Run, page?: "compare.html"): Promise<void> {
         try {
-            const result = { ...(await this.load(run)), title: nameOf(run) };
+            const result = { ...(await this.load(run, page)), title: nameOf(run) };
             const shared = attention();
             const stage = new Stage(result, shared);
+            const photo = run.photographed && !page ? await get<Silhouette>(fileAddress(run.folder, "compare.json")) : undefined;
+            this.made = new MadeForm(run, (kind) => void (kind === "scan" ? this.open({ ...run, compared: true }, "compare.html") : this.open({ ...run, photographed: true })));
             const element = h(
                 "section",
                 { class: "result", "aria-label": `result ${nameOf(run)}` },
                 header(result),
                 stage.element,
-                h("div", { class: "below" }, h("div", { class: "card" }, h("h2", {}, "Take it with you"), downloads(run), h("button", { type: "button", click: () => this.showBench() }, "Back to the print")), distribution(result, shared), stripTable(result, shared)),
+                h("div", { class: "below" }, h("div", { class: "card" }, h("h2", {}, "Take it with you"), downloads(run), h("button", { type: "button", click: () => this.showBench() }, "Back to the print"), run.compared && !page && h("button", { type: "button", click: () => void this.open(run, "compare.html") }, "Show the scan")), result.comparison && scanComparison(result.comparison), photo?.photo !== undefined && silhouette(run, photo), this.made.element, distribution(result, shared), stripTable(result, shared)),
             );
             this.put(element, () => stage.dispose());
             this.results.mark(run.folder);
@@ -232,6 +241,7 @@ class Studio {
     private take(job: Job): void {
         const before = this.jobs.get(job.id);
         this.jobs.set(job.id, job);
+        this.made?.follow(job);
         if (job.id !== this.mine) return;
         this.live.follow(job);
         this.release.textContent = this.releasing() ? "Release once more" : "Release";

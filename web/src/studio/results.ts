@@ -51,6 +51,8 @@ export function downloads(run: Run): HTMLElement {
         link("shape.stl", "STL"),
         link("drawing.svg", "Drawing"),
         link("scene.toml", "Scene"),
+        run.compared && link("compare.html", "Scan"),
+        run.photographed && link("silhouette.png", "Silhouette"),
     );
 }
 

@@ -21,6 +21,7 @@ struct Placing {
 struct RegistrationOptions {
     bool free_scale = false;
     double kept = 0.9;  ///< share of the points that have to lie on the surface: the rest may be anything
+    std::size_t most_points = 40000;  ///< that the last step looks at
 };
 
 struct Registration {
@@ -34,12 +35,13 @@ struct Registration {
 /// Puts a scan's points on a surface: trimmed iterative closest points (Chetverikov, Stepanov, Krsek 2005)
 /// with the distance to the surface's tangent planes (Chen, Medioni 1992), from many starts: the axes of both
 /// turned onto each other in every right-handed way, the scan's middle on the surface's and, as a scan may be
-/// a part, on places all over it. Few points first, all of them for the last. The same result on every
-/// machine with any number of threads. At least ten points.
+/// a part, on places all over it. Few points first, many for the last step, in which all count by a robust
+/// weight instead of some being left out. The same result on every machine with any number of threads. At
+/// least ten points.
 Registration register_scan(std::span<const Vec3> scan, const SurfaceSearch& surface,
                            const RegistrationOptions& options, const Control& control = {});
 
-/// Goes on from a registration, on another surface near by.
+/// The last step alone: goes on from a registration near by, with more points or on another surface.
 Registration refine_registration(std::span<const Vec3> scan, const SurfaceSearch& surface,
                                  const RegistrationOptions& options, const Registration& start);
 

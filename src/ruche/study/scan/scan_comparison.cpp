@@ -25,7 +25,7 @@ constexpr std::array units = {Unit{"mm", 1.0}, Unit{"cm", 10.0}, Unit{"m", 1000.
 
 /// Evenly over the scan's triangles, or its points where it has none.
 std::vector<Vec3> sampled(const RawMesh& scan) {
-    constexpr int wanted = 40000;
+    constexpr int wanted = 100000;
     std::vector<Vec3> points;
     if (scan.triangles.empty()) {
         const std::size_t step = std::max<std::size_t>(1, scan.vertices.size() / wanted);
@@ -105,11 +105,10 @@ SurfaceSearch surface_of(Skin skin, const std::vector<Corners>& front, const std
 
 /// Puts the scan on both skins first. Then, unless it was said, decides which one the scanner has seen. What
 /// is of one side fits that clearly better than the other, and nearly as well as both: noise brings some
-/// points nearer to the wrong one. What is of both sides fits neither.
-std::pair<Skin, Registration> placed(const std::vector<Vec3>& points, const ScanOptions& options,
-                                     const std::vector<Corners>& front, const std::vector<Corners>& back,
-                                     const Control& control) {
-    const RegistrationOptions how{.free_scale = options.free_scale, .kept = options.kept};
+/// points nearer to the wrong one. What is of both sides fits neither. The skins have the print's sides here.
+std::pair<Skin, Registration> skin_found(const std::vector<Vec3>& points, const ScanOptions& options,
+                                         const RegistrationOptions& how, const std::vector<Corners>& front,
+                                         const std::vector<Corners>& back, const Control& control) {
     if (options.skin != Skin::automatic)
         return {options.skin, register_scan(points, surface_of(options.skin, front, back), how, control)};
     const Registration both = register_scan(points, surface_of(Skin::both, front, back), how, control);
@@ -125,6 +124,19 @@ std::pair<Skin, Registration> placed(const std::vector<Vec3>& points, const Scan
     const bool one_side =
         better.second.rms < clearly * worse.second.rms && better.second.rms <= nearly * both.rms + least;
     return one_side ? better : std::pair(Skin::both, both);
+}
+
+std::pair<Skin, Registration> placed(const std::vector<Vec3>& points, const ScanOptions& options,
+                                     const Result& result, std::vector<Corners> front,
+                                     std::vector<Corners> back, const Control& control) {
+    for (std::vector<Corners>* skin : {&front, &back}) {
+        const std::vector<Corners> sides = sides_of_print(result, *skin);
+        skin->insert(skin->end(), sides.begin(), sides.end());
+    }
+    RegistrationOptions how{.free_scale = options.free_scale, .kept = options.kept};
+    const auto [skin, found] = skin_found(points, options, how, front, back, control);
+    how.most_points = points.size();
+    return {skin, refine_registration(points, surface_of(skin, front, back), how, found)};
 }
 
 /// A point of the scan: where it is nearest to the sheet, and how far from it; positive outside.
@@ -200,6 +212,10 @@ ScanComparison compare_with_scan(const Result& result, const SurfaceFields& fiel
                                  const ScanOptions& options, const Control& control) {
     ScanComparison comparison;
     std::vector<Vec3> points = sampled(scan);
+    const double size = size_of(points);  // not a number without points, as triangles without area have none
+    if (!(size > 0.0 && std::isfinite(size)))
+        throw InputError({.key = "the scan"}, "has no extent: its points or triangles are all in one place",
+                         "Is it complete?");
     const Unit& unit = options.unit.empty() ? guessed_unit(size_of(points), size_of(result.shape))
                                             : unit_named(options.unit);
     comparison.unit = unit.name;
@@ -209,7 +225,8 @@ ScanComparison compare_with_scan(const Result& result, const SurfaceFields& fiel
 
     const std::vector<Corners> front = front_skin(result, fields);
     const std::vector<Corners> back = back_skin(result, fields);
-    std::tie(comparison.skin, comparison.registration) = placed(points, options, front, back, control);
+    std::tie(comparison.skin, comparison.registration) =
+        placed(points, options, result, front, back, control);
     for (Vec3& p : points) p = comparison.registration.placing(p);
     const std::vector<Measured> measured = measure(points, comparison.skin, front, back);
     add_numbers(comparison, measured);

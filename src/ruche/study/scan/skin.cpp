@@ -37,6 +37,14 @@ std::vector<Corners> skin(const Result& result, const SurfaceFields& fields, con
     return triangles;
 }
 
+/// Where a skin has a vertex, as one of its triangles sees it.
+const Vec3& corner_of(const Result& result, const std::vector<Corners>& skin, int triangle, int vertex) {
+    const Triangle& corners = result.layout.mesh.triangles[static_cast<std::size_t>(triangle)];
+    std::size_t k = 0;
+    while (corners[k] != vertex) ++k;
+    return skin[static_cast<std::size_t>(triangle)][k];
+}
+
 }  // namespace
 
 std::vector<Corners> front_skin(const Result& result, const SurfaceFields& fields) {
@@ -49,6 +57,24 @@ std::vector<Corners> back_skin(const Result& result, const SurfaceFields& fields
     const double fabric = result.scene.material.fabric_thickness;
     return skin(result, fields,
                 [&](const Print& print, double before) { return -fabric * (1.0 - before) - print.back; });
+}
+
+std::vector<Corners> sides_of_print(const Result& result, const std::vector<Corners>& skin) {
+    constexpr double step = 1e-9;  // mm
+    std::vector<Corners> sides;
+    for (const Edge& edge : find_edges(result.layout.mesh).edges) {
+        if (edge.on_boundary()) continue;
+        const auto [a, b] = edge.vertex;
+        const auto [here, there] = edge.triangle;
+        const Vec3& a_here = corner_of(result, skin, here, a);
+        const Vec3& a_there = corner_of(result, skin, there, a);
+        const Vec3& b_here = corner_of(result, skin, here, b);
+        const Vec3& b_there = corner_of(result, skin, there, b);
+        if ((a_here - a_there).norm() < step || (b_here - b_there).norm() < step) continue;
+        sides.push_back({a_here, b_here, b_there});
+        sides.push_back({a_here, b_there, a_there});
+    }
+    return sides;
 }
 
 }  // namespace ruche

@@ -15,4 +15,8 @@ namespace ruche {
 std::vector<Corners> front_skin(const Result& result, const SurfaceFields& fields);
 std::vector<Corners> back_skin(const Result& result, const SurfaceFields& fields);
 
+/// The upright sides of the print, where a skin steps from one triangle to the next: two triangles an edge.
+/// What tells where along the sheet a scan lies is mostly these.
+std::vector<Corners> sides_of_print(const Result& result, const std::vector<Corners>& skin);
+
 }  // namespace ruche

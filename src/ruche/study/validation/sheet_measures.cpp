@@ -159,13 +159,14 @@ HelixFit strip_helix(const PrintMesh& layout, std::span<const Vec3> shape, int s
     return fit_helix(points);
 }
 
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share) {
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share,
+                            const Vec2& along) {
     const Eigen::AlignedBox2d inside = middle_of(print_box(layout), share);
     Vec3 sight = Vec3::Zero();
     std::set<int> printed;
     for (int t = 0; t < layout.mesh.triangle_count(); ++t) {
         if (share < 1.0 && !inside.contains(layout_centroid(layout.mesh, t))) continue;
-        sight += layout_area(layout.mesh, t) * deformation(layout.mesh, shape, t).col(1);
+        sight += layout_area(layout.mesh, t) * (deformation(layout.mesh, shape, t) * along);
         if (layout.print[static_cast<std::size_t>(t)].bare()) continue;
         printed.insert(layout.mesh.triangles[static_cast<std::size_t>(t)].begin(),
                        layout.mesh.triangles[static_cast<std::size_t>(t)].end());

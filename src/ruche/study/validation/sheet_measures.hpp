@@ -48,12 +48,13 @@ Vec3 position_of(const PrintMesh& layout, std::span<const Vec3> shape, const Vec
 /// The helix through the released centre line of a strip, its first one. Not valid without one.
 HelixFit strip_helix(const PrintMesh& layout, std::span<const Vec3> shape, int strip);
 
-/// Curvature of the circle through the printed vertices as one looks along the layout's y direction, that of
-/// the released sheet in the mean: the silhouette of a roll seen from its front. Only of what lies inside the
-/// middle `share` of the box around the print; 1 counts all. Of the surface where plastic and fabric
-/// meet, as everything here: the outside of the plastic has a larger radius. Not negative; NaN when there is
-/// no circle.
-double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share);
+/// Curvature of the circle through the printed vertices as one looks along a direction of the layout, y by
+/// default, that of the released sheet in the mean: the silhouette of a roll seen from its front. Only of
+/// what lies inside the middle `share` of the box around the print; 1 counts all. Of the surface where
+/// plastic and fabric meet, as everything here: the outside of the plastic has a larger radius. Not negative;
+/// NaN when there is no circle.
+double silhouette_curvature(const PrintMesh& layout, std::span<const Vec3> shape, double share = 1.0,
+                            const Vec2& along = Vec2::UnitY());
 
 /// The strips whose id begins with `begin` and whose centre line lies inside the middle `share` of the box
 /// around all centre lines; indices into layout.strips.
