@@ -342,3 +342,14 @@ TEST_CASE("traced generator: contradictions are named") {
     CHECK(contains_text(problem_of("traced", {{"inner_mm", "30"}}), "not smaller than outer_mm"));
     CHECK(problem_of("traced", {{"inner_mm", "0"}, {"field", "parallel"}}).empty());
 }
+
+TEST_CASE("traced generator: a spiral over a very large disc is refused, not waited for") {
+    CHECK(contains_text(problem_of("traced", {{"field", "circular"},
+                                              {"turn_deg", "1"},
+                                              {"inner_mm", "4"},
+                                              {"outer_mm", "800"},
+                                              {"length_mm", "0"},
+                                              {"spacing_mm", "1.6"},
+                                              {"outer_spacing_mm", "1.6"}}),
+                        "more strips than anybody prints"));
+}
