@@ -79,7 +79,7 @@ TEST_CASE("workspace: an uploaded drawing gets a plain name and never replaces a
 }
 
 TEST_CASE(
-    "workspace: a scan keeps its kind of file and a plain name, and is listed; a result's shape is not") {
+    "workspace: a scan keeps its kind of file and a plain name, and is listed, a result's shape is not") {
     const Neighbourhood place;
     const Workspace workspace(place.work());
     CHECK(workspace.scans().empty());

@@ -39,8 +39,8 @@ struct Export {
         trouble;  ///< what is wrong: in the error, or "warning: " and what the card keeps; empty: nothing
 };
 
-/// What else the handbooks of the programs offer: blocks of parameters and results with titles above, between
-/// and below, other encodings and separators, names in the user's language.
+/// What else the documentation of the programs offer: blocks of parameters and results with titles above,
+/// between and below, other encodings and separators, names in the user's language.
 std::vector<Export> other_layouts();
 
 }  // namespace ruche::test
