@@ -50,6 +50,7 @@ Estimate quotient(const Estimate& a, const Estimate& b) {
 
 Estimate magnitude(const Estimate& e) {
     std::vector<double> magnitudes;
+    magnitudes.reserve(e.values.size());
     for (const double value : e.values) magnitudes.push_back(std::abs(value));
     Estimate result = estimate(magnitudes, e.refinement);
     result.certain = e.certain;
