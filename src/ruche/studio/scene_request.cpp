@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ruche/core/document.hpp"
+#include "ruche/material/cards.hpp"
 #include "ruche/scene/read_scene.hpp"
 
 namespace ruche {
