@@ -24,18 +24,10 @@ import time
 import tomllib
 from pathlib import Path
 
+import uniaxial_law
+
 PROGRAM = os.environ.get("RUCHE_PROGRAM", str(Path(__file__).parents[1] / "build/release/ruche"))
-PARAMETERS = (
-    "alpha_1_mpa",
-    "alpha_2_mpa",
-    "alpha_3_mpa",
-    "beta_1_mpa",
-    "beta_2_mpa",
-    "gamma_1",
-    "gamma_2",
-    "fabric_poissons_ratio",
-    "fabric_bending_stiffness_n_mm",
-)
+PARAMETERS = (*uniaxial_law.PARAMETERS, "fabric_bending_stiffness_n_mm")
 WANTED_COVERAGE = 0.9
 CURVE_ERRORS = ("largest_relative_error", "largest_error_over_full_scale")
 

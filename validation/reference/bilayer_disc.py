@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from infinite_strip import Laminate
+from minimise import minimise, symmetric_derivative
 from numpy.polynomial import legendre
 
 RADIUS, MIDDLE = 20.0, 10.0  # mm, of the disc and of the part that is measured
@@ -51,25 +52,9 @@ class Cap:
         step = 1e-30
         return self.energy(x[:, None] + 1j * step * np.eye(len(x))).imag / step
 
-    def hessian(self, x):
-        step = 1e-5
-        rows = [(self.gradient(x + step * u) - self.gradient(x - step * u)) / (2 * step) for u in np.eye(len(x))]
-        return (np.array(rows) + np.array(rows).T) / 2
-
     def solve(self, x):
-        """Newton's method with halved steps; stable among shapes of revolution."""
-        for _ in range(200):
-            gradient = self.gradient(x)
-            values, vectors = np.linalg.eigh(self.hessian(x))
-            step = -vectors @ ((vectors.T @ gradient) / np.maximum(np.abs(values), 1e-9))
-            if np.max(np.abs(step)) < 1e-11:
-                assert values[0] > 0
-                return x
-            share = 1.0
-            while self.energy(x + share * step) > self.energy(x) + 1e-14 * abs(self.energy(x)) and share > 1e-6:
-                share /= 2
-            x = x + share * step
-        raise RuntimeError("Newton's method did not converge")
+        """Stable among shapes of revolution."""
+        return minimise(self.energy, lambda x: (self.gradient(x), symmetric_derivative(self.gradient, x)), x, still=1e-11)
 
     def mean_curvature(self, x):
         """Mean over the layout's area of r < MIDDLE."""

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from infinite_strip import Laminate
+from minimise import minimise
 from numpy.polynomial import legendre
 
 ANGLES = (0.0, 15.0, 30.0, 45.0, 60.0, 75.0, 90.0)  # degrees
@@ -117,25 +118,8 @@ class HelicalStrip:
         return columns[:, 0], (hessian + hessian.T) / 2
 
     def solve(self, x):
-        """Newton's method with halved steps; a positive definite Hessian at the end certifies a minimum, of all
-        states of this kind: twisted ones too."""
-
-        def energy(x):
-            return self.energy(x[:, None])[0]
-
-        for _ in range(300):
-            gradient, hessian = self.gradient_and_hessian(x)
-            values, vectors = np.linalg.eigh(hessian)
-            step = -vectors @ ((vectors.T @ gradient) / np.maximum(np.abs(values), 1e-9))
-            if np.max(np.abs(step)) < 1e-10:
-                assert values[0] > 0, values[0]
-                return x
-            step *= min(1.0, 0.5 / np.max(np.abs(step)))
-            share = 1.0
-            while energy(x + share * step) > energy(x) + 1e-14 * abs(energy(x)) and share > 1e-6:
-                share /= 2
-            x = x + share * step
-        raise RuntimeError("Newton's method did not converge")
+        """Stable among all states of this kind: twisted ones too."""
+        return minimise(lambda x: self.energy(x[:, None])[0], self.gradient_and_hessian, x, still=1e-10, longest=0.5)
 
 
 def helix(laminate, width=WIDTH, terms=8):

@@ -11,6 +11,7 @@ import sys
 from dataclasses import dataclass
 
 import numpy as np
+from minimise import minimise, symmetric_derivative
 
 WIDTHS = (1.0, 2.0, 3.0, 5.0, 8.0)
 
@@ -100,26 +101,8 @@ class Strip:
         step = 1e-30
         return np.array([self.energy(x + 1j * step * unit).imag / step for unit in np.eye(len(x))])
 
-    def hessian(self, x):
-        step = 1e-5
-        rows = [(self.gradient(x + step * u) - self.gradient(x - step * u)) / (2 * step) for u in np.eye(len(x))]
-        return (np.array(rows) + np.array(rows).T) / 2
-
-    def solve(self, start):
-        """Newton's method with halved steps; a positive definite Hessian at the end certifies a minimum."""
-        x = start.copy()
-        for _ in range(200):
-            gradient, hessian = self.gradient(x), self.hessian(x)
-            values, vectors = np.linalg.eigh(hessian)
-            step = -vectors @ ((vectors.T @ gradient) / np.maximum(np.abs(values), 1e-9))
-            if np.max(np.abs(step)) < 1e-12:
-                assert values[0] > 0
-                return x
-            share = 1.0
-            while self.energy(x + share * step) > self.energy(x) + 1e-14 * abs(self.energy(x)) and share > 1e-6:
-                share /= 2
-            x = x + share * step
-        raise RuntimeError("Newton's method did not converge")
+    def solve(self, x):
+        return minimise(self.energy, lambda x: (self.gradient(x), symmetric_derivative(self.gradient, x)), x, still=1e-12)
 
 
 def curvature(width, laminate=None, terms=8):

@@ -10,10 +10,10 @@
 #include "ruche/core/error.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 #include "ruche/pattern/generators.hpp"
-#include "text_file.hpp"
+#include "temporary_file.hpp"
 
 using namespace ruche;
-using ruche::test::TextFile;
+using ruche::test::TemporaryFile;
 
 namespace {
 
@@ -35,7 +35,7 @@ std::string grid_text(double reach, double step, double spacing,
 
 /// "LINE KEY: problem" of a file that is read and has to reach over a disc of 1 mm with a spacing of 1 mm.
 std::string grid_problem(const std::string& text) {
-    const TextFile file(text);
+    const TemporaryFile file(text);
     try {
         const DirectionGrid grid(file.path());
         grid.require_disc(1.0);
@@ -63,7 +63,7 @@ bool mentions(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("direction grid: between nodes spacing is bilinear, and directions turn the short way") {
-    const TextFile file("0,0,170,2\n10,0,10,4\n0,10,170,2\n10,10,10,8\n");
+    const TemporaryFile file("0,0,170,2\n10,0,10,4\n0,10,170,2\n10,10,10,8\n");
     const DirectionGrid grid(file.path());
     // 170 and 10 degrees are 20 apart, by way of 0: lines have no sign.
     CHECK(line_angle(grid.angle({5, 3}), 0.0) < 1e-12);
@@ -79,8 +79,8 @@ TEST_CASE("direction grid: between nodes spacing is bilinear, and directions tur
 }
 
 TEST_CASE("direction grid: rows in any order, columns by the header, separators and steps as they come") {
-    const TextFile sorted("0,0,0,2\n1,0,10,3\n5,0,20,4\n0,2,30,5\n1,2,40,6\n5,2,50,7\n");
-    const TextFile shuffled(
+    const TemporaryFile sorted("0,0,0,2\n1,0,10,3\n5,0,20,4\n0,2,30,5\n1,2,40,6\n5,2,50,7\n");
+    const TemporaryFile shuffled(
         "\xEF\xBB\xBF# from another program\r\nspacing_mm;angle_deg;y_mm;x_mm\r\n7;50;2;5\r\n2;0;0;0\r\n"
         "6;40;2;0.9999999999\r\n3;10;0;1\r\n\r\n5;30;2;0\r\n4;20;0;5\r\n");
     const DirectionGrid a(sorted.path());
@@ -133,7 +133,7 @@ TEST_CASE("direction grid: it has to reach over the fabric and leave room betwee
 }
 
 TEST_CASE("traced generator: a field from a file gives the lines of the field that it was taken from") {
-    const TextFile file(
+    const TemporaryFile file(
         grid_text(20.0, 0.5, 2.5, [](double x, double y) { return std::atan2(y, x) / degree + 90.0; }));
     const TracedStripsOptions options{
         .field = DirectionField::file, .file = file.path(), .inner = 6, .outer = 20, .length = 10};
@@ -150,7 +150,7 @@ TEST_CASE("traced generator: a field from a file gives the lines of the field th
 
 TEST_CASE("traced generator: spacings from a file, and strips cross the place where directions cancel") {
     // Angles half as fast as the polar one: a singular point that only lines without sign can have.
-    const TextFile file(
+    const TemporaryFile file(
         grid_text(16.0, 1.0, 3.5, [](double x, double y) { return 0.5 * std::atan2(y, x) / degree; }));
     const GeneratedPattern pattern = generate_traced(
         {.field = DirectionField::file, .file = file.path(), .inner = 0, .outer = 16, .length = 0});
@@ -171,7 +171,7 @@ TEST_CASE("traced generator: spacings from a file, and strips cross the place wh
 }
 
 TEST_CASE("traced generator: what contradicts a field from a file is named") {
-    const TextFile file(grid_text(10.0, 1.0, 2.5, [](double, double) { return 0.0; }));
+    const TemporaryFile file(grid_text(10.0, 1.0, 2.5, [](double, double) { return 0.0; }));
     CHECK(mentions(traced_problem({{"field", "file"}}), "pattern.options.file: no file"));
     CHECK(mentions(traced_problem({{"file", file.path()}}), "pattern.options.file: is given"));
     CHECK(mentions(traced_problem({{"field", "file"}, {"file", "/nowhere/at all.csv"}}),

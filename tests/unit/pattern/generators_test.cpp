@@ -8,10 +8,10 @@
 #include "ruche/core/error.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 #include "ruche/pattern/tiling.hpp"
-#include "text_file.hpp"
+#include "temporary_file.hpp"
 
 using namespace ruche;
-using ruche::test::TextFile;
+using ruche::test::TemporaryFile;
 
 namespace {
 
@@ -149,7 +149,7 @@ TEST_CASE("tiling: vertices are all there, each once, each with three neighbours
 }
 
 TEST_CASE("curve generator: points are read whatever separates them, curves split at empty lines") {
-    const TextFile file(
+    const TemporaryFile file(
         "\xEF\xBB\xBFx_mm, y_mm\r\n# a comment\r\n0, 0\r\n10.5, -2e1\r\n\r\n1;1\n2\t1\n2 2\n1,1\n");
     const GeneratedPattern p = generate_curves({.file = file.path(), .width = 1.5});
     REQUIRE(p.strips.size() == 2);
@@ -161,7 +161,7 @@ TEST_CASE("curve generator: points are read whatever separates them, curves spli
 }
 
 TEST_CASE("curve generator: a third column names the curves") {
-    const TextFile file("curve,x_mm,y_mm\nb c,0,0\na,5,5\nb c,1,0\na,6,5\nb-c,0,9\nb-c,1,9\nlone,3,3\n");
+    const TemporaryFile file("curve,x_mm,y_mm\nb c,0,0\na,5,5\nb c,1,0\na,6,5\nb-c,0,9\nb-c,1,9\nlone,3,3\n");
     const GeneratedPattern p = generate_curves({.file = file.path()});
     REQUIRE(p.strips.size() == 3);
     CHECK(p.strips[0].id == "curve-b-c");
@@ -174,7 +174,7 @@ TEST_CASE("curve generator: a third column names the curves") {
 
 TEST_CASE("curve generator: what is no table of points is an error with its line") {
     const auto message = [](const char* text) {
-        const TextFile file(text);
+        const TemporaryFile file(text);
         try {
             (void)generate_curves({.file = file.path()});
         } catch (const InputError& error) {
@@ -194,7 +194,7 @@ TEST_CASE("curve generator: what is no table of points is an error with its line
 }
 
 TEST_CASE("generator registry: every generator runs with its defaults and has unique ids") {
-    const TextFile file("0,0\n10,0\n");
+    const TemporaryFile file("0,0\n10,0\n");
     for (const std::string& name : generator_names()) {
         CAPTURE(name);
         std::map<std::string, std::string> options;

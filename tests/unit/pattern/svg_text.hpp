@@ -1,39 +1,19 @@
 #pragma once
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "ruche/pattern/drawing.hpp"
+#include "temporary_file.hpp"
 
 /// Drawings written in the tests themselves.
 namespace svg_text {
 
-/// A file in the temporary directory that is gone with this object.
-class TemporaryFile {
-  public:
-    explicit TemporaryFile(std::string_view text, const std::string& name = "drawing.svg") {
-        // The address tells apart what runs in one process, the directory what runs in several.
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("ruche-svg-" + std::to_string(std::hash<std::string_view>()(text)) + "-" +
-                   std::to_string(reinterpret_cast<std::uintptr_t>(this)));
-        std::filesystem::create_directories(folder_);
-        path_ = (folder_ / name).string();
-        std::ofstream(path_, std::ios::binary) << text;
-    }
-    ~TemporaryFile() { std::filesystem::remove_all(folder_); }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    const std::string& path() const { return path_; }
-
-  private:
-    std::filesystem::path folder_;
-    std::string path_;
+struct TemporaryFile : ruche::test::TemporaryFile {
+    explicit TemporaryFile(std::string_view text, const std::string& name = "drawing.svg")
+        : ruche::test::TemporaryFile(text, name) {}
 };
 
 inline ruche::Drawing read(std::string_view text, const ruche::DrawingOptions& options = {}) {

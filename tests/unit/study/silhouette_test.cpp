@@ -1,13 +1,10 @@
 #include "ruche/study/silhouette/silhouette_comparison.hpp"
 
 #include <doctest/doctest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <random>
 
 // After <cstdio>, which it does not include itself.
@@ -17,8 +14,10 @@
 #include "ruche/core/error.hpp"
 #include "ruche/study/scan/skin.hpp"
 #include "ruche/study/silhouette/photo.hpp"
+#include "temporary_file.hpp"
 
 using namespace ruche;
+using ruche::test::TemporaryFile;
 
 namespace {
 
@@ -123,22 +122,6 @@ Image front_view(const Result& result, double mm_per_px, const PhotoOf& how = {}
         },
         how);
 }
-
-/// A file that goes away with the test.
-class PhotoFile {
-  public:
-    PhotoFile(const char* name, const std::string& bytes)
-        : path_(std::filesystem::temp_directory_path() / (std::to_string(getpid()) + name)) {
-        std::ofstream(path_, std::ios::binary) << bytes;
-    }
-    ~PhotoFile() { std::filesystem::remove(path_); }
-    PhotoFile(const PhotoFile&) = delete;
-    PhotoFile& operator=(const PhotoFile&) = delete;
-    std::string path() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 std::string to_jpeg(const Image& image) {
     jpeg_compress_struct state = {};
@@ -266,21 +249,21 @@ TEST_CASE("silhouette: the photo may look along any direction of the layout") {
 
 TEST_CASE("silhouette: PNG and JPEG are read, what is broken is refused") {
     const Image photo = photo_of(disc({60, 50}, 30), {.width = 120, .height = 100});
-    const PhotoFile png("silhouette.png", to_png(photo));
+    const TemporaryFile png(to_png(photo), "silhouette.png");
     CHECK(is_photo(png.path()));
     CHECK(read_photo(png.path()).rgb == photo.rgb);
     const std::string packed = to_jpeg(photo);
-    const PhotoFile jpeg("silhouette.jpg", packed);
+    const TemporaryFile jpeg(packed, "silhouette.jpg");
     CHECK(is_photo(jpeg.path()));
     const Image read = read_photo(jpeg.path());
     REQUIRE(read.rgb.size() == photo.rgb.size());
     CHECK(std::abs(outline_of(read).radius - 30.0) < 0.2);
-    const PhotoFile half("silhouette-half.jpg", packed.substr(0, packed.size() / 2));
+    const TemporaryFile half(packed.substr(0, packed.size() / 2), "silhouette-half.jpg");
     CHECK(message_of([&] { (void)read_photo(half.path()); }).find("not a complete JPEG") !=
           std::string::npos);
-    const PhotoFile cut("silhouette-cut.png", to_png(photo).substr(0, 200));
+    const TemporaryFile cut(to_png(photo).substr(0, 200), "silhouette-cut.png");
     CHECK(message_of([&] { (void)read_photo(cut.path()); }).find("not a complete PNG") != std::string::npos);
-    const PhotoFile text("silhouette.txt", "ruche");
+    const TemporaryFile text("ruche", "silhouette.txt");
     CHECK_FALSE(is_photo(text.path()));
     CHECK_FALSE(is_photo("no such file"));
 }

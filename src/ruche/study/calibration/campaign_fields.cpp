@@ -91,8 +91,7 @@ std::span<const Field<TensionTest>> fields<TensionTest>() {
         {"gauge_length_mm", &T::gauge_length_mm, "mm", 0, most_mm, "Length of such a dogbone's narrow part."},
         {"cycle", &T::cycle, "", 0, 10000,
          "Which load-unload cycle, from 1; 0: the last complete one, with those before it that cannot be "
-         "told "
-         "from it."},
+         "told from it."},
         {"branch", choice<&T::branch>(branch_names), "", -infinity, infinity,
          "\"unloading\", as fabric on a frame is released, or \"loading\" where nothing else was measured."},
         {"rest_length", choice<&T::rest_length>(rest_lengths), "", -infinity, infinity,

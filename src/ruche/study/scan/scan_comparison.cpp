@@ -216,8 +216,8 @@ ScanComparison compare_with_scan(const Result& result, const SurfaceFields& fiel
     if (!(size > 0.0 && std::isfinite(size)))
         throw InputError({.key = "the scan"}, "has no extent: its points or triangles are all in one place",
                          "Is it complete?");
-    const Unit& unit = options.unit.empty() ? guessed_unit(size_of(points), size_of(result.shape))
-                                            : unit_named(options.unit);
+    const Unit& unit =
+        options.unit.empty() ? guessed_unit(size, size_of(result.shape)) : unit_named(options.unit);
     comparison.unit = unit.name;
     comparison.unit_mm = unit.mm;
     comparison.unit_guessed = options.unit.empty();

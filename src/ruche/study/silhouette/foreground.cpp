@@ -1,11 +1,14 @@
 #include "ruche/study/silhouette/foreground.hpp"
 
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/convex_hull_2.h>
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 
 #include "ruche/core/error.hpp"
 
@@ -152,26 +155,16 @@ std::vector<std::size_t> largest_piece(const Window& window, const std::vector<f
     return largest;
 }
 
-/// Andrew's monotone chain (1979).
-std::vector<Vec2> convex_hull(std::vector<Vec2> points) {
-    std::sort(points.begin(), points.end(),
-              [](const Vec2& a, const Vec2& b) { return std::pair(a.x(), a.y()) < std::pair(b.x(), b.y()); });
+std::vector<Vec2> convex_hull(const std::vector<Vec2>& points) {
+    using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_2;
+    std::vector<Point> all;
+    all.reserve(points.size());
+    for (const Vec2& p : points) all.emplace_back(p.x(), p.y());
+    std::vector<Point> corners;
+    CGAL::convex_hull_2(all.begin(), all.end(), std::back_inserter(corners));
     std::vector<Vec2> hull;
-    const auto walk = [&hull](auto begin, auto end) {
-        const std::size_t start = hull.size() + 1;
-        for (auto p = begin; p != end; ++p) {
-            while (hull.size() > start) {
-                const Vec2 last = hull.back() - hull[hull.size() - 2];
-                const Vec2 next = *p - hull.back();
-                if (last.x() * next.y() - last.y() * next.x() > 0.0) break;
-                hull.pop_back();
-            }
-            hull.push_back(*p);
-        }
-        hull.pop_back();  // it begins the other half
-    };
-    walk(points.begin(), points.end());
-    walk(points.rbegin(), points.rend());
+    hull.reserve(corners.size());
+    for (const Point& p : corners) hull.emplace_back(p.x(), p.y());
     return hull;
 }
 

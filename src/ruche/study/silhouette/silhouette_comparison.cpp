@@ -21,8 +21,8 @@ constexpr Colour of_points{{180, 20, 120}};
 double known_length_px(const SilhouetteOptions& options) {
     constexpr const char* how =
         "A photo has no scale: lay a ruler beside the near rim of the roll, and say the length between two "
-        "of "
-        "its marks and where these are in the photo: --known-length-mm 50 --known-length-at 120,80,932,85.";
+        "of its marks and where these are in the photo: --known-length-mm 50 --known-length-at "
+        "120,80,932,85.";
     if (!(options.known_length_mm > 0.0))
         throw InputError({.key = "--known-length-mm"}, "is missing: a length in mm, larger than 0", how);
     if (options.known_length_at_px.size() != 4)

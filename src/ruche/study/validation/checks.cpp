@@ -49,9 +49,8 @@ class Findings {
         for (const auto* list : {&bad, &open, &good})
             outcome.details.insert(outcome.details.end(), list->begin(), list->end());
         if (!outcome.details.empty()) return outcome;
-        return {.check = check,
-                .verdict = Verdict::unresolved,
-                .details = {"not resolved: there is no value to look at"}};
+        return {
+            .check = check, .verdict = Verdict::fails, .details = {"not so: there is no value to look at"}};
     }
 
   private:

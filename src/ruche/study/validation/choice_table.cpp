@@ -27,21 +27,11 @@ std::vector<std::string> all_choices(const std::vector<const ExperimentOutcome*>
     return names;
 }
 
-std::string default_cell(const Estimate& e) {
-    std::string text = to_text(e) + (e.certain ? "" : " (!)");
-    if (std::isfinite(e.order))
-        text += fmt::format("<br><small>order {:.2g}, limit {:.4g}</small>", e.order, e.extrapolated);
-    return text;
-}
-
-/// The share of the default, and half the width of the range that both uncertainties leave it, to first
-/// order.
+/// The share of the default, and the value itself.
 std::string share_cell(const Estimate& e, const Estimate& base) {
-    const double share = e.value / base.value;
-    const double off =
-        std::abs(share) * (std::abs(e.uncertainty / e.value) + std::abs(base.uncertainty / base.value));
-    return fmt::format("× {:.3f} ± {:.2g}<br><small>{}{}</small>", share, off, to_text(e),
-                       e.certain && base.certain ? "" : " (!)");
+    const Estimate share = quotient(e, base);
+    return fmt::format("× {:.3f} ± {:.2g}<br><small>{}{}</small>", share.value, share.uncertainty, to_text(e),
+                       share.certain ? "" : " (!)");
 }
 
 std::string metric_row(const ExperimentOutcome& o, const MetricSpec& metric,
@@ -57,7 +47,7 @@ std::string metric_row(const ExperimentOutcome& o, const MetricSpec& metric,
             html += "<td></td>";
         else
             html += fmt::format("<td class=\"n\">{}</td>",
-                                name == first ? default_cell(base) : share_cell(s->y.front(), base));
+                                name == first ? to_html(base) : share_cell(s->y.front(), base));
     }
     return html + "</tr>\n";
 }
@@ -72,8 +62,9 @@ std::string choice_table(const Validation& validation) {
     const std::vector<std::string> names = all_choices(list);
     std::string html = "<h2>What each choice does</h2>\n" +
                        html_paragraph(
-                           "Ruche's own choice, then the share of it that another choice gives, with "
-                           "the uncertainty of both. An empty cell: the choice has nothing to act on.") +
+                           "Ruche's own choice, then the share of it that another choice gives, "
+                           "estimated from the shares on each mesh. An empty cell: the choice has nothing "
+                           "to act on.") +
                        "<table class=\"wide\"><tr><th></th>";
     for (const std::string& name : names) html += "<th>" + html_escaped(name) + "</th>";
     html += "</tr>\n";

@@ -59,4 +59,11 @@ Estimate magnitude(const Estimate& e) {
 
 std::string to_text(const Estimate& e) { return fmt::format("{:.5g} ± {:.2g}", e.value, e.uncertainty); }
 
+std::string to_html(const Estimate& e) {
+    std::string html = to_text(e) + (e.certain ? "" : " (!)");
+    if (std::isfinite(e.order))
+        html += fmt::format("<br><small>order {:.2g}, limit {:.5g}</small>", e.order, e.extrapolated);
+    return html;
+}
+
 }  // namespace ruche

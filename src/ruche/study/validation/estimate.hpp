@@ -39,4 +39,8 @@ Estimate magnitude(const Estimate& e);
 /// "0.1201 ± 0.0013".
 std::string to_text(const Estimate& e);
 
+/// The same for a table's cell: with (!) when it is not certain, and below it the observed order and
+/// Richardson's limit where meshes approach one in order.
+std::string to_html(const Estimate& e);
+
 }  // namespace ruche

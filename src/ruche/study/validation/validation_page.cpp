@@ -20,14 +20,6 @@ print thicker or thinner by the experiment's spread would give. Where three mesh
 observed order and Richardson's estimate of the limit stand below the value. Measured points stand only in the
 paper's pictures and are not drawn.)";
 
-std::string table_value(const Estimate& e) { return to_text(e) + (e.certain ? "" : " (!)"); }
-
-/// Observed order and Richardson's estimate of the limit, in small letters.
-std::string limit_of(const Estimate& e) {
-    if (!std::isfinite(e.order)) return {};
-    return fmt::format("<br><small>order {:.2g}, limit {:.5g}</small>", e.order, e.extrapolated);
-}
-
 std::string verdict_cell(Verdict verdict) {
     static constexpr const char* classes[] = {"good", "open", "bad"};
     return fmt::format("<td class=\"{}\">{}</td>", classes[static_cast<std::size_t>(verdict)],
@@ -125,7 +117,7 @@ std::string value_table(const ExperimentOutcome& o) {
             if (!e.sweep.key.empty()) html += fmt::format("<td class=\"n\">{:g}</td>", first.x[i]);
             for (const MetricSpec& m : e.metrics) {
                 const Estimate& value = o.of(variant.name, m.name).y[i];
-                html += fmt::format("<td class=\"n\">{}{}</td>", table_value(value), limit_of(value));
+                html += fmt::format("<td class=\"n\">{}</td>", to_html(value));
             }
             html += "</tr>\n";
         }
