@@ -59,7 +59,7 @@ async function measure(browser, result) {
 }
 
 const folder = scratch();
-const results = process.argv.length > 2 ? process.argv.slice(2) : [0.57, 0.18, 0.113].map((size) => torus(folder, size));
+const results = process.argv.length > 2 ? process.argv.slice(2) : [0.57, 0.162, 0.1].map((size) => torus(folder, size));
 const browser = await launch();
 let failed = false;
 const row = (cells) => console.log("| " + cells.join(" | ") + " |");

@@ -115,8 +115,10 @@ bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::Vec
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded(at.model)) {
         bool ready = factorize(at, Order::hessian);
-        for (shift_ = ready ? shift_ : std::max(0.1 * shift_, 1e-9 * mean); !ready && shift_ < 1e3 * mean;
-             shift_ *= 4.0)
+        // The last one may have been far more than the soft directions need, which then hardly move: where
+        // some parts are much stiffer than others the mean says nothing about those.
+        const double first = shift_ > 0.0 ? std::max(0.1 * shift_, 1e-16 * mean) : 1e-9 * mean;
+        for (shift_ = ready ? shift_ : first; !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
             ready = factorize(at, Order::hessian, shift_);
         return finish(at, ready, step);
     }
