@@ -3,11 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "output/sample_results.hpp"
 #include "ruche/core/error.hpp"
+#include "ruche/scene/read_scene.hpp"
+#include "ruche/scene/simulate.hpp"
 #include "ruche/study/scan/skin.hpp"
 
 using namespace ruche;
@@ -35,11 +38,22 @@ double roll() { return static_cast<double>(random_numbers()) * 0x1p-32; }
 /// Normal, of unit variance (Box and Muller 1958): distributions of the library differ between machines.
 double noise() { return std::sqrt(-2.0 * std::log(1.0 - roll())) * std::cos(2.0 * M_PI * roll()); }
 
-/// Points of a skin, evenly over its triangles as far as these are alike.
+/// What a scanner sees from the front: the skin and the upright sides of the print.
+std::vector<Corners> front_with_sides(const Result& result, const SurfaceFields& fields) {
+    std::vector<Corners> skin = front_skin(result, fields);
+    for (const Corners& side : sides_of_print(result, skin)) skin.push_back(side);
+    return skin;
+}
+
+/// Points of a skin, evenly over its area.
 std::vector<Vec3> points_of(const std::vector<Corners>& skin, int count, double deviation = 0.0) {
+    std::vector<double> upto;
+    for (const Corners& t : skin)
+        upto.push_back((upto.empty() ? 0.0 : upto.back()) + (t[1] - t[0]).cross(t[2] - t[0]).norm());
     std::vector<Vec3> points;
     for (int i = 0; i < count; ++i) {
-        const Corners& t = skin[static_cast<std::size_t>(roll() * static_cast<double>(skin.size()))];
+        const auto at = std::ranges::upper_bound(upto, roll() * upto.back());
+        const Corners& t = skin[static_cast<std::size_t>(at - upto.begin())];
         double u = roll();
         double v = roll();
         if (u + v > 1.0) {
@@ -77,12 +91,13 @@ TEST_CASE(
     "found") {
     const Result result = hill();
     const SurfaceFields fields = surface_fields(result);
+    const std::vector<Corners> skin = front_with_sides(result, fields);
     constexpr int scans = 3;
     double half = 0.0;
     double whole = 0.0;
     for (unsigned seed = 1; seed <= scans; ++seed) {
         random_numbers.seed(seed);
-        std::vector<Vec3> points = points_of(front_skin(result, fields), 60000, 0.3);
+        std::vector<Vec3> points = points_of(skin, 60000, 0.3);
         std::erase_if(points, [](const Vec3& p) { return p.x() > 22.0; });
         const ScanComparison found = compare_with_scan(result, fields, scan_of(points, 10.0), {});
         CHECK(found.unit == "cm");
@@ -101,6 +116,36 @@ TEST_CASE(
     // 100 cases.
     CHECK(std::sqrt(half) < std::sqrt(3.8) * 0.09);
     CHECK(std::sqrt(whole) < std::sqrt(3.8) * 0.15);
+}
+
+TEST_CASE("scan comparison: half a noisy scan in cm of a released sheet is put back to 0.05 mm") {
+    // A sheet that bends in every direction, unlike the one above, says enough of where it lies. It is cut
+    // before there is noise: a noisy cut along the surface would move the surface.
+    const Result result = simulate(read_scene(RUCHE_TEST_DATA "/../../examples/field/scene.toml",
+                                              {parse_override("output.picture=false")}));
+    const SurfaceFields fields = surface_fields(result);
+    const std::vector<Corners> skin = front_with_sides(result, fields);
+    std::vector<double> along;
+    for (const Vec3& p : result.shape) along.push_back(p.x());
+    const auto middle = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+    std::ranges::nth_element(along, middle);
+    constexpr int scans = 3;
+    double worst = 0.0;
+    for (unsigned seed = 1; seed <= scans; ++seed) {
+        random_numbers.seed(seed);
+        std::vector<Vec3> points = points_of(skin, 200000);
+        std::erase_if(points, [&](const Vec3& p) { return p.x() > *middle; });
+        for (Vec3& p : points) p += 0.3 * Vec3(noise(), noise(), noise());
+        const ScanComparison found = compare_with_scan(result, fields, scan_of(points, 10.0), {});
+        CHECK(found.unit == "cm");
+        CHECK(found.skin == Skin::front);
+        CHECK(found.rms == doctest::Approx(0.3).epsilon(0.15));
+        worst += std::pow(misplaced(result, found), 2) / scans;
+    }
+    // By the normals of 100,000 points noise of 0.3 mm leaves the worst point of the whole sheet with a
+    // standard deviation of 0.019 mm, by the seven in ten that are clear of edges with 0.023 mm; the mean of
+    // three squares is below 3.8 of them in 99 of 100 cases, 0.044 mm.
+    CHECK(std::sqrt(worst) < 0.05);
 }
 
 TEST_CASE("scan comparison: the back and both sides are recognised, in every unit") {

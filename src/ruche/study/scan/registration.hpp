@@ -21,7 +21,7 @@ struct Placing {
 struct RegistrationOptions {
     bool free_scale = false;
     double kept = 0.9;  ///< share of the points that have to lie on the surface: the rest may be anything
-    std::size_t most_points = 40000;  ///< that the last step looks at
+    std::size_t most_points = 10000;  ///< that the last step looks at
 };
 
 struct Registration {
