@@ -187,7 +187,15 @@ class Studio {
                 { class: "result", "aria-label": `result ${nameOf(run)}` },
                 header(result),
                 stage.element,
-                h("div", { class: "below" }, h("div", { class: "card" }, h("h2", {}, "Take it with you"), downloads(run), h("button", { type: "button", click: () => this.showBench() }, "Back to the print"), run.compared && !page && h("button", { type: "button", click: () => void this.open(run, "compare.html") }, "Show the scan")), result.comparison && scanComparison(result.comparison), photo?.photo !== undefined && silhouette(run, photo), this.made.element, distribution(result, shared), stripTable(result, shared)),
+                h("div", { class: "below" },
+                    h("div", { class: "column" },
+                        h("div", { class: "card" }, h("h2", {}, "Take it with you"), downloads(run),
+                            h("button", { type: "button", click: () => this.showBench() }, "Back to the print"),
+                            run.compared && !page && h("button", { type: "button", click: () => void this.open(run, "compare.html") }, "Show the scan")),
+                        distribution(result, shared)),
+                    h("div", { class: "column" }, photo?.photo !== undefined && silhouette(run, photo), this.made.element),
+                    result.comparison && scanComparison(result.comparison),
+                    stripTable(result, shared)),
             );
             this.put(element, () => stage.dispose());
             this.results.mark(run.folder);
