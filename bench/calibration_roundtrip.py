@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Does `ruche calibrate` find the card that `ruche virtual-test` tested?
 
-usage: bench/calibration_roundtrip.py FOLDER [--seeds 100] [--mode joint|paper] [--cycles 3] [--format plain|weights]
+usage: bench/calibration_roundtrip.py FOLDER [--seeds 100] [--mode joint|paper] [--cycles 6] [--format plain|weights]
            [--jobs 1] [--curves 20] [--card CARD]
 
 The tests of the card are simulated once (FOLDER/curves.json). For each seed they are recorded with noise (1 % of full
@@ -130,7 +130,7 @@ def main():
     parser.add_argument("folder", type=Path)
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--mode", choices=("joint", "paper"), default="joint")
-    parser.add_argument("--cycles", type=int, default=3)
+    parser.add_argument("--cycles", type=int, default=6)
     parser.add_argument("--format", choices=("plain", "weights"), default="plain")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--curves", type=int, default=20)

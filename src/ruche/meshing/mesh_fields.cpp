@@ -13,6 +13,8 @@ std::span<const Field<MeshOptions>> fields<MeshOptions>() {
         {"fabric_size_mm", &M::fabric_size_mm, "mm", 0.01, 1000,
          "Edge length of the elements in bare fabric far from plastic."},
         {"grading", &M::grading, "", 0, 10, "Growth of the edge length per length away from plastic."},
+        {"subdivisions", &M::subdivisions, "", 0, 6,
+         "Times that every triangle is then divided into four: nested meshes, for convergence studies."},
     };
     return table;
 }

@@ -8,6 +8,7 @@
 #include "ruche/geometry/polyline.hpp"
 #include "ruche/meshing/branched_midlines.hpp"
 #include "ruche/meshing/centre_edges.hpp"
+#include "ruche/meshing/divide_triangles.hpp"
 #include "ruche/meshing/mesh_order.hpp"
 #include "ruche/meshing/point_locator.hpp"
 #include "ruche/meshing/print_mesh.hpp"
@@ -104,19 +105,22 @@ SegmentGraph divide(const BorderGraph& graph, const SizeField& sizes, std::vecto
 
 Triangulation refined(const MeshOptions& options, const SegmentGraph& graph, const SizeField& sizes,
                       double expected) {
-    if (expected > most_triangles) {
-        const double enough = options.size_mm * std::sqrt(expected / most_triangles);
+    const double most_undivided = most_triangles / std::pow(4.0, options.subdivisions);
+    if (expected > most_undivided) {
+        const double enough = options.size_mm * std::sqrt(expected / most_undivided);
         throw InputError({.key = "mesh.size_mm"},
                          fmt::format("the mesh would take about {:.2g} triangles; the limit is {:.2g}",
-                                     expected, 1.0 * most_triangles),
+                                     expected * std::pow(4.0, options.subdivisions), 1.0 * most_triangles),
                          fmt::format("Choose mesh.size_mm = {:.2g} or larger (now {:.3g}), or a larger "
                                      "mesh.fabric_size_mm (now {:.3g}).",
                                      enough, options.size_mm, options.fabric_size_mm));
     }
-    const double limit = std::min(1.0 * most_triangles, unforeseen * expected + 200.0 * graph.points.size());
+    const double limit = std::min(most_undivided, unforeseen * expected + 200.0 * graph.points.size());
     try {
-        return triangulate(
+        Triangulation result = triangulate(
             graph, [&](const Vec2& p) { return sizes.at(p); }, static_cast<int>(limit));
+        for (int i = 0; i < options.subdivisions; ++i) result = divided(std::move(result));
+        return result;
     } catch (const InputError& error) {
         throw InputError(
             {.key = "mesh.size_mm"}, error.problem(),
@@ -235,6 +239,7 @@ std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions
         double size = options.size_mm;
         for (const Polygon& polygon : strip.region)
             size = std::min(size, size_on(polygon, strip.thickness, options));
+        size = std::ldexp(size, -options.subdivisions);
         for (const Polyline& line : centre_lines(strip)) {
             const double pieces = std::ceil(length(line) / (0.5 * size) - 1e-9);
             if (!(pieces >= 1.0 && pieces < most_triangles)) continue;
@@ -251,6 +256,14 @@ std::vector<MeshedStrip> meshed_strips(const Pattern& pattern, const MeshOptions
 }
 
 }  // namespace
+
+MeshOptions undivided(MeshOptions options) {
+    options.size_mm = std::ldexp(options.size_mm, -options.subdivisions);
+    options.fabric_size_mm = std::ldexp(options.fabric_size_mm, -options.subdivisions);
+    options.elements_across = std::ldexp(options.elements_across, options.subdivisions);
+    options.subdivisions = 0;
+    return options;
+}
 
 PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     check(pattern, options);
@@ -282,7 +295,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     centre_edges.find(result);
     result.outline_layer = pattern.outline_layer;
     result.warnings = pattern.warnings;
-    warn_about_size(result, expected);
+    warn_about_size(result, expected * std::pow(4.0, options.subdivisions));
     const int pieces = find_pieces(result.mesh).count;
     if (pieces > 1) {
         result.warnings.push_back(

@@ -72,8 +72,12 @@ struct MeshOptions {
     double elements_across = 1.0;  ///< at least so many elements across a strip's width
     double fabric_size_mm = 2.0;   ///< edge length far from plastic
     double grading = 0.3;          ///< growth of edge length per length away from plastic
+    int subdivisions = 0;          ///< times that every triangle is then divided into four
     bool centre_lines = false;     ///< the strips' centre lines are made of edges too; no key of a scene
 };
+
+/// About the same edge lengths without subdivisions.
+MeshOptions undivided(MeshOptions options);
 
 template <>
 std::span<const Field<MeshOptions>> fields<MeshOptions>();

@@ -40,9 +40,13 @@ std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& fine
     MeshOptions options = mesh_options(scene);
     int count = finest.mesh.triangle_count();
     while (count > small) {
-        options.size_mm *= 2.0;
-        options.fabric_size_mm *= 2.0;
-        options.elements_across = std::max(1.0, 0.5 * options.elements_across);
+        if (options.subdivisions > 0) {
+            --options.subdivisions;
+        } else {
+            options.size_mm *= 2.0;
+            options.fabric_size_mm *= 2.0;
+            options.elements_across = std::max(1.0, 0.5 * options.elements_across);
+        }
         PrintMesh layout = mesh_pattern(pattern, options);
         if (layout.mesh.triangle_count() > worth * count) break;
         count = layout.mesh.triangle_count();

@@ -29,7 +29,7 @@ std::optional<PrintMesh> quick_layout(const Result& result) {
         return result.layout;
     }
     const double coarser = std::sqrt(static_cast<double>(count) / aimed_at);
-    MeshOptions options = mesh_options(scene);
+    MeshOptions options = undivided(mesh_options(scene));
     options.size_mm *= coarser;
     options.fabric_size_mm *= coarser;
     options.elements_across = std::max(1.0, options.elements_across / coarser);

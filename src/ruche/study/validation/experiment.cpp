@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "ruche/core/suggest.hpp"
@@ -129,6 +130,17 @@ void require_factor(const std::vector<double>& meshes, const Place& place) {
         throw InputError(place, "has fewer than two meshes", "One mesh says nothing about its own error.");
 }
 
+/// Each a half of the one before, from the first of `meshes` on.
+void require_halves(const Experiment& e, const Place& place) {
+    for (const std::vector<double>* meshes : {&e.meshes, &e.quick_meshes})
+        for (const double mesh : *meshes) {
+            const double halves = std::log2(e.meshes.front() / mesh);
+            if (halves >= 0.0 && halves <= 6.0 && std::abs(halves - std::round(halves)) < 1e-6) continue;
+            throw InputError(place, fmt::format("{:g} is not a half, quarter, ... of the first mesh", mesh),
+                             "For example meshes = [1, 0.5, 0.25]; quick_meshes are of the same kind.");
+        }
+}
+
 /// What the parts of an experiment say about each other.
 void check_names(const Experiment& e) {
     const Place place{.file = e.file};
@@ -187,6 +199,7 @@ Experiment read_experiment(const std::string& folder) {
     e.quick_meshes = number_list(reader, "quick_meshes");
     if (e.quick_meshes.empty()) e.quick_meshes = {e.meshes[0], e.meshes[1]};
     require_factor(e.quick_meshes, reader.place_of_key("quick_meshes"));
+    if (e.nested) require_halves(e, reader.place_of_key("nested"));
     if (const Node* node = reader.take_table("sweep")) {
         TableReader table(*node, "sweep");
         table.read(e.sweep);

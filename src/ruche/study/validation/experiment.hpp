@@ -132,6 +132,7 @@ struct Experiment {
     std::optional<CantileverSample> hang;     ///< or strips of it that hang from a clamp
     std::vector<double> meshes = {1.0, 0.5};  ///< element sizes over the scene's, falling by one factor
     std::vector<double> quick_meshes;         ///< of the quick subset
+    bool nested = false;  ///< finer meshes are the first one, each triangle divided into four
     SweepSpec sweep;
     std::vector<VariantSpec> variants;
     std::vector<MetricSpec> metrics;

@@ -30,6 +30,8 @@ std::span<const Field<Experiment>> fields<Experiment>() {
         {"variants_from", &E::variants_from, "", -infinity, infinity,
          "File with [[variant]] tables that come before those written here, relative to the folder."},
         {"quick", &E::quick, "", 0, 0, "Whether it takes part in the quick subset."},
+        {"nested", &E::nested, "", 0, 0,
+         "Finer meshes are the first one, each triangle divided into four; element sizes fall by halves."},
     };
     return table;
 }
