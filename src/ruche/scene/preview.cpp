@@ -46,7 +46,7 @@ MeshOptions preview_mesh(const Pattern& pattern, MeshOptions mesh, double wanted
 
 Scene preview_scene(Scene scene, double triangles) {
     constexpr int patience = 60;  // iterations
-    if (scene.pattern.mesh.empty()) 
+    if (scene.pattern.mesh.empty())
         scene.mesh = preview_mesh(scene_pattern(scene), undivided(scene.mesh), triangles);
     scene.solver.max_iterations = std::min(scene.solver.max_iterations, patience);
     scene.model.contact = false;

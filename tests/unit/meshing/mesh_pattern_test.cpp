@@ -141,6 +141,40 @@ TEST_CASE("mesh: size, elements across and fabric size do what they say") {
           2 * mesh_pattern(pattern, {.fabric_size_mm = 4.0, .grading = 1.0}).mesh.triangle_count());
 }
 
+TEST_CASE("mesh: subdivisions nest meshes") {
+    Pattern drawn;
+    drawn.strips = {strip("front", {Vec2(0, 0), Vec2(12, 0)}, 2.0, 1.0),
+                    strip("back", {Vec2(3, -4), Vec2(6, 5)}, 1.5, 0.6, Side::back)};
+    const Pattern pattern = finish_pattern(drawn, 3.0);
+    const PrintMesh once = mesh_pattern(pattern, {.centre_lines = true});
+    for (const int n : {1, 2}) {
+        const PrintMesh finer = mesh_pattern(pattern, {.subdivisions = n, .centre_lines = true});
+        CHECK(is_sound(finer));
+        CHECK(finer.mesh.triangle_count() == (1 << 2 * n) * once.mesh.triangle_count());
+        CHECK(smallest_angle_deg(finer.mesh) == doctest::Approx(smallest_angle_deg(once.mesh)));
+        // Every triangle lies in one of the coarser mesh, and carries its print.
+        const PointLocator locator(once.mesh);
+        const auto carries_its_print = [&](int t) {
+            const Triangle& v = finer.mesh.triangles[t];
+            const Vec2 middle =
+                (finer.mesh.vertices[v[0]] + finer.mesh.vertices[v[1]] + finer.mesh.vertices[v[2]]) / 3.0;
+            const std::optional<MeshPoint> at = locator.find(middle, 1e-9);
+            return at && finer.print[t] == once.print[at->triangle] &&
+                   finer.strip[t] == once.strip[at->triangle];
+        };
+        for (int t = 0; t < finer.mesh.triangle_count(); ++t) REQUIRE(carries_its_print(t));
+        for (const std::size_t s : {0U, 1U}) {
+            CHECK(finer.strips[s].centreline[0].size() >
+                  (1U << n) * (once.strips[s].centreline[0].size() - 2));
+            const std::size_t pieces = once.strips[s].edge_lines[0].vertices.size() - 1;
+            CHECK(finer.strips[s].edge_lines[0].vertices.size() - 1 == (1U << n) * pieces);
+        }
+    }
+    CHECK(error_of(pattern, {.subdivisions = 6}).empty());
+    CHECK(error_of(pattern, {.size_mm = 0.1, .fabric_size_mm = 0.1, .subdivisions = 6})
+              .find("Choose mesh.size_mm") != std::string::npos);
+}
+
 TEST_CASE("mesh: thin and wide strips get smaller elements where they need them, in proportion to the size") {
     const auto triangles = [](double width, double thickness, double size) {
         Pattern drawn;

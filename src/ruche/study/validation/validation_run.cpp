@@ -104,7 +104,8 @@ ValidationRun planned(const Experiment& e, const RunPlace& place) {
         return run;
     }
     scale(run.scene.mesh, e.nested ? e.meshes.front() : place.mesh);
-    if (e.nested) run.scene.mesh.subdivisions = static_cast<int>(std::lround(std::log2(e.meshes.front() / place.mesh)));
+    if (e.nested)
+        run.scene.mesh.subdivisions = static_cast<int>(std::lround(std::log2(e.meshes.front() / place.mesh)));
     run.command = "ruche simulate " + file;
     for (const Override& o : of_scene) run.command += fmt::format(" --set '{}={}'", o.path, o.value);
     if (place.mesh != 1.0 || e.nested)
