@@ -114,8 +114,8 @@ std::vector<ModelParameter> model_parameters(const ModelInput& input) {
 GradientChange gradient_change(const Model& model, const Eigen::VectorXd& x,
                                const ModelParameter& parameter) {
     constexpr double shrink = 0.25;
-    constexpr int most_steps =
-        10;  // the last one is 6e-8: fabric close to the end of its law needs small ones
+    // The last one is 9e-10: fabric at the end of its law, whose extension is 1e-6 wide, needs small ones.
+    constexpr int most_steps = 13;
     constexpr std::size_t highest_order = 4;  // of the extrapolation, in squared steps
     // What rounding leaves of forces that cancel, and more than enough for slopes that a person reads.
     const double rounding = 1e-12 * model.typical_force(x);
