@@ -1,4 +1,5 @@
 #include "ruche/study/validation/validation.hpp"
+#include "ruche/study/validation/validation_run.hpp"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -363,6 +364,23 @@ TEST_CASE("experiments: a mistake is named with its place") {
     CHECK(problem(good + "[[check]]\nkind = \"within\"\nmetric = \"m\"\nreference = \"n\"\n")
               .find("no metric or reference \"n\"") != std::string::npos);
     CHECK(problem(good + "[[picture]]\nvariant = \"b\"\n").find("no variant \"b\"") != std::string::npos);
+}
+
+TEST_CASE("experiments: nested meshes are the first one, divided") {
+    const std::string text =
+        "meshes = [1.4, 0.7, 0.35]\nnested = true\nscene = \"scene.toml\"\n[[metric]]\nname = \"m\"\n"
+        "[[check]]\nkind = \"positive\"\nmetric = \"m\"\n";
+    const ExperimentFolder folder(text);
+    folder.write("scene.toml", "[pattern]\ngenerator = \"strip\"\n[mesh]\nsize_mm = 2\n");
+    const std::vector<ValidationRun> runs = expand(read_experiment(folder.path()), false, "program");
+    REQUIRE(runs.size() == 3);
+    for (const ValidationRun& run : runs) {
+        CHECK(run.scene.mesh.size_mm == doctest::Approx(2.8));
+        CHECK(std::ldexp(1.4, -run.scene.mesh.subdivisions) == doctest::Approx(run.place.mesh));
+        CHECK(run.command.find("mesh.subdivisions=") != std::string::npos);
+    }
+    CHECK(ExperimentFolder("quick_meshes = [1, 0.5]\n" + text).problem().find("not a half, quarter") !=
+          std::string::npos);
 }
 
 TEST_CASE("experiments: variants of a file of their own come first, and metrics can be shares of others") {
