@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "ruche/core/document.hpp"
+#include "ruche/material/cards.hpp"
 #include "ruche/pattern/generator_registry.hpp"
 
 namespace ruche {
