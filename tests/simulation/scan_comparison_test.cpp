@@ -119,8 +119,7 @@ TEST_CASE(
 }
 
 TEST_CASE("scan comparison: half a noisy scan in cm of a released sheet is put back to 0.05 mm") {
-    // A sheet that bends in every direction, unlike the one above, says enough of where it lies. It is cut
-    // before there is noise: a noisy cut along the surface would move the surface.
+    // A sheet that bends in every direction, unlike the one above, says enough of where it lies.
     const Result result = simulate(read_scene(RUCHE_TEST_DATA "/../../examples/field/scene.toml",
                                               {parse_override("output.picture=false")}));
     const SurfaceFields fields = surface_fields(result);
@@ -133,18 +132,17 @@ TEST_CASE("scan comparison: half a noisy scan in cm of a released sheet is put b
     double worst = 0.0;
     for (unsigned seed = 1; seed <= scans; ++seed) {
         random_numbers.seed(seed);
-        std::vector<Vec3> points = points_of(skin, 200000);
+        std::vector<Vec3> points = points_of(skin, 200000, 0.3);
         std::erase_if(points, [&](const Vec3& p) { return p.x() > *middle; });
-        for (Vec3& p : points) p += 0.3 * Vec3(noise(), noise(), noise());
         const ScanComparison found = compare_with_scan(result, fields, scan_of(points, 10.0), {});
         CHECK(found.unit == "cm");
         CHECK(found.skin == Skin::front);
-        CHECK(found.rms == doctest::Approx(0.3).epsilon(0.15));
+        CHECK(found.rms == doctest::Approx(0.3).epsilon(0.1));
         worst += std::pow(misplaced(result, found), 2) / scans;
     }
     // By the normals of 100,000 points noise of 0.3 mm leaves the worst point of the whole sheet with a
-    // standard deviation of 0.019 mm, by the seven in ten that are clear of edges with 0.023 mm; the mean of
-    // three squares is below 3.8 of them in 99 of 100 cases, 0.044 mm.
+    // standard deviation of 0.019 mm (seven in ten are clear of edges). The bias that cuts and edges leave
+    // comes on top, and depends on where the cut runs: docs/studio.md.
     CHECK(std::sqrt(worst) < 0.05);
 }
 

@@ -4,8 +4,7 @@
 
 namespace ruche {
 
-/// Every triangle in four like it, by the middles of its edges. Those of the original mesh keep their number,
-/// as the middle one of the four.
+/// Every triangle in four like it, by the middles of its edges.
 Triangulation divided(Triangulation triangulation);
 
 }  // namespace ruche

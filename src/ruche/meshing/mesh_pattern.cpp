@@ -103,24 +103,25 @@ SegmentGraph divide(const BorderGraph& graph, const SizeField& sizes, std::vecto
     return result;
 }
 
+// Triangles of the mesh for one of the triangulation.
+double parts_of_triangle(const MeshOptions& options) { return std::pow(4.0, options.subdivisions); }
+
 Triangulation refined(const MeshOptions& options, const SegmentGraph& graph, const SizeField& sizes,
                       double expected) {
-    const double most_undivided = most_triangles / std::pow(4.0, options.subdivisions);
+    const double most_undivided = most_triangles / parts_of_triangle(options);
     if (expected > most_undivided) {
         const double enough = options.size_mm * std::sqrt(expected / most_undivided);
         throw InputError({.key = "mesh.size_mm"},
                          fmt::format("the mesh would take about {:.2g} triangles; the limit is {:.2g}",
-                                     expected * std::pow(4.0, options.subdivisions), 1.0 * most_triangles),
+                                     expected * parts_of_triangle(options), 1.0 * most_triangles),
                          fmt::format("Choose mesh.size_mm = {:.2g} or larger (now {:.3g}), or a larger "
                                      "mesh.fabric_size_mm (now {:.3g}).",
                                      enough, options.size_mm, options.fabric_size_mm));
     }
     const double limit = std::min(most_undivided, unforeseen * expected + 200.0 * graph.points.size());
     try {
-        Triangulation result = triangulate(
+        return triangulate(
             graph, [&](const Vec2& p) { return sizes.at(p); }, static_cast<int>(limit));
-        for (int i = 0; i < options.subdivisions; ++i) result = divided(std::move(result));
-        return result;
     } catch (const InputError& error) {
         throw InputError(
             {.key = "mesh.size_mm"}, error.problem(),
@@ -278,7 +279,8 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     std::vector<int> origin;
     const SegmentGraph segments = divide(graph, sizes, origin);
     const double expected = sizes.expected_triangles(pattern.fabric);
-    const Triangulation triangulation = refined(options, segments, sizes, expected);
+    Triangulation triangulation = refined(options, segments, sizes, expected);
+    for (int i = 0; i < options.subdivisions; ++i) triangulation = divided(std::move(triangulation));
     if (triangulation.mesh.triangles.empty()) throw InputError({}, "the fabric's outline encloses no area");
 
     const std::vector<std::vector<int>> covered =
@@ -295,7 +297,7 @@ PrintMesh mesh_pattern(const Pattern& pattern, const MeshOptions& options) {
     centre_edges.find(result);
     result.outline_layer = pattern.outline_layer;
     result.warnings = pattern.warnings;
-    warn_about_size(result, expected * std::pow(4.0, options.subdivisions));
+    warn_about_size(result, expected * parts_of_triangle(options));
     const int pieces = find_pieces(result.mesh).count;
     if (pieces > 1) {
         result.warnings.push_back(

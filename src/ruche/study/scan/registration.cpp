@@ -125,7 +125,8 @@ class Matcher {
     /// noise lets know where leaving out a tenth by its distance gives away 44 % (of the variance). Points
     /// beyond a rim do not: noise pulls them inwards at the rims that the scan has, and at a cut it has none
     /// (Turk, Levoy 1994 leave them out, too). Nor do those near an edge, where noise makes a point of one
-    /// side one of the other: by half a deviation, a trade between that bias and what is left to go by.
+    /// side one of the other: by half a deviation, a trade between that bias and what is left to go by. Where
+    /// noise is as large as the print's parts, so that hardly any would be left, they count.
     Candidate polish(const std::vector<Vec3>& points, Candidate at, int iterations) const {
         constexpr double sharp = 0.5;  // radians
         const std::vector<Corners> creases = creases_of(surface_.triangles(), sharp);
@@ -209,11 +210,18 @@ class Matcher {
     }
 
     static void leave_out_near(const SurfaceSearch& edges, double distance, std::vector<Pair>& pairs) {
+        constexpr double enough = 0.2;  // of those that count
+        std::vector<double> weights(pairs.size());
         parallel_for(pairs.size(), [&](std::size_t i) {
-            Pair& pair = pairs[i];
-            if (pair.weight > 0.0 && (edges.nearest(pair.target).point - pair.target).norm() < distance)
-                pair.weight = 0.0;
+            const Pair& pair = pairs[i];
+            const bool near = (edges.nearest(pair.target).point - pair.target).norm() < distance;
+            weights[i] = near ? 0.0 : pair.weight;
         });
+        const auto counting =
+            std::ranges::count_if(pairs, [](const Pair& pair) { return pair.weight > 0.0; });
+        const auto clear = std::ranges::count_if(weights, [](double weight) { return weight > 0.0; });
+        if (static_cast<double>(clear) < enough * static_cast<double>(counting)) return;
+        for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].weight = weights[i];
     }
 
     Moved moved_to(const std::vector<Pair>& pairs, const Placing& placing) const {
