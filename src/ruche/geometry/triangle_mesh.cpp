@@ -76,4 +76,16 @@ double layout_area(const TriangleMesh& mesh, int triangle) {
     return 0.5 * (e1.x() * e2.y() - e1.y() * e2.x());
 }
 
+Eigen::Matrix<double, 2, 3> hat_gradients(const TriangleMesh& mesh, int triangle) {
+    const Triangle& tri = mesh.triangles[triangle];
+    const double twice_area = 2.0 * layout_area(mesh, triangle);
+    Eigen::Matrix<double, 2, 3> gradients;
+    for (int i = 0; i < 3; ++i) {
+        // The opposite edge, turned by a quarter to the left.
+        const Vec2 edge = mesh.vertices[tri[(i + 2) % 3]] - mesh.vertices[tri[(i + 1) % 3]];
+        gradients.col(i) = Vec2(-edge.y(), edge.x()) / twice_area;
+    }
+    return gradients;
+}
+
 }  // namespace ruche

@@ -50,4 +50,7 @@ MeshPieces find_pieces(const TriangleMesh& mesh);
 /// Signed area of a triangle of the layout, mm^2; positive when counter-clockwise.
 double layout_area(const TriangleMesh& mesh, int triangle);
 
+/// Gradients of the three hat functions of a triangle of the layout, 1/mm; one column per corner.
+Eigen::Matrix<double, 2, 3> hat_gradients(const TriangleMesh& mesh, int triangle);
+
 }  // namespace ruche

@@ -112,7 +112,7 @@ bool Newton::line_search() {
         }
         if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
             // A few spots that it has thrown far off must not shorten the step of the whole sheet.
-            trial -= elimination_(model(), candidate, trial_.gradient, before);
+            trial -= elimination_.after_step(model(), x_, before, candidate, trial_.gradient);
             lower = is_lower() && may_take(candidate);
         }
         if (lower) {

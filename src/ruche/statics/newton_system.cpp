@@ -9,7 +9,8 @@ namespace ruche {
 namespace {
 
 constexpr double first_share = 0.1;
-constexpr double share_factor = 4.0;  // by which the share grows and falls
+constexpr double least_share = 0.005;  // below it none
+constexpr double share_factor = 4.0;   // by which the share grows and falls
 
 }  // namespace
 
@@ -53,7 +54,8 @@ bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
     // A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom
     // enough.
     if (share_ == 0.0 && after_gauss_newton_) share_ = 1.0;
-    for (share_ = std::max(share_, first_share);; share_ = std::min(1.0, share_factor * share_)) {
+    if (share_ == 0.0) share_ = first_share;
+    for (;; share_ = std::clamp(share_factor * share_, first_share, 1.0)) {
         for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
             mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
         if (factorize({at.model, at.x, mean_}, Order::gauss_newton)) return true;
@@ -66,7 +68,7 @@ void NewtonSystem::adapt(bool halved) {
         share_ = std::clamp(share_factor * share_, 0.5 * first_share, 1.0);
     } else {
         share_ = after_gauss_newton_ ? 0.0 : share_ / share_factor;
-        if (share_ < 0.3 * first_share) share_ = 0.0;
+        if (share_ < least_share) share_ = 0.0;
     }
     after_gauss_newton_ = false;
 }

@@ -16,19 +16,22 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
+constexpr int rings_after_step = 2;   // of vertices around a spot that a step has thrown off
 constexpr double good_enough = 0.01;  // of the spot's first residual: its surroundings will move too
+
+Eigen::VectorXd gather(const Model::Patch& patch, const Eigen::VectorXd& x) {
+    Eigen::VectorXd values(patch.size());
+    for (int i = 0; i < patch.size(); ++i) values[i] = x[patch.unknowns()[i]];
+    return values;
+}
+
+void place(const Model::Patch& patch, const Eigen::VectorXd& values, Eigen::VectorXd& x) {
+    for (int i = 0; i < patch.size(); ++i) x[patch.unknowns()[i]] = values[i];
+}
 
 /// Newton's method on a spot: exact Hessian, shifted until it is positive definite, Armijo's rule. Returns
 /// by how much the energy fell.
 double relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) {
-    const auto gather = [&] {
-        Eigen::VectorXd values(patch.size());
-        for (int i = 0; i < patch.size(); ++i) values[i] = x[patch.unknowns()[i]];
-        return values;
-    };
-    const auto place = [&](const Eigen::VectorXd& values) {
-        for (int i = 0; i < patch.size(); ++i) x[patch.unknowns()[i]] = values[i];
-    };
     DenseSums sums;
     DenseSums none;
     Eigen::LLT<Eigen::MatrixXd> factor;
@@ -48,16 +51,16 @@ double relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) 
         const Eigen::VectorXd direction = factor.solve(-sums.gradient);
         const double slope = sums.gradient.dot(direction);
         if (!(slope < 0.0) || !direction.allFinite()) break;
-        const Eigen::VectorXd from = gather();
+        const Eigen::VectorXd from = gather(patch, x);
         bool lower = false;
         for (double t = 1.0; t > 1e-6 && !lower; t *= 0.5) {
-            place(from + t * direction);
+            place(patch, from + t * direction, x);
             const double trial = model.evaluate(patch, x, Order::value, none);
             lower = std::isfinite(trial) && trial <= energy + 1e-4 * t * slope;
             if (lower) fell += energy - trial;
         }
         if (!lower) {
-            place(from);
+            place(patch, from, x);
             break;
         }
     }
@@ -68,19 +71,25 @@ double relax(const Model& model, const Model::Patch& patch, Eigen::VectorXd& x) 
 
 NonlinearElimination::NonlinearElimination(const Model& model, const std::vector<char>& held)
     : held_(held),
+      triangles_of_vertex_(model.vertex_count()),
       edge_unknowns_of_vertex_(model.vertex_count()),
       force_(model.vertex_count()),
       parent_(model.pattern().node_count()) {
+    const TriangleMesh& mesh = model.input().mesh;
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        for (const int v : mesh.triangles[t]) triangles_of_vertex_[v].push_back(t);
+    }
     for (int node = model.vertex_count(); node < model.pattern().node_count(); ++node) {
         const std::array<int, 4> around = model.vertices_of_edge_unknown(node - model.vertex_count());
         for (int end = 0; end < 2; ++end) edge_unknowns_of_vertex_[around[end]].push_back(node);
     }
 }
 
-/// Nodes of each spot: vertices under a large part of the largest force or under `much`, and the edge
-/// unknowns at them, joined where an element touches both.
-std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pattern,
-                                                          const Eigen::VectorXd& gradient, double much) {
+/// Nodes of each spot: vertices under a large part of the largest force or under `much`, `rings` of vertices
+/// around them, and the edge unknowns at all of these, joined where an element touches both.
+std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, const Eigen::VectorXd& gradient,
+                                                          double much, int rings) {
+    const NodePattern& pattern = model.pattern();
     const int vertices = pattern.vertex_count();
     for (int v = 0; v < vertices; ++v) force_[v] = gradient.segment<3>(3 * v).norm();
     std::vector<double> sorted = force_;
@@ -90,10 +99,28 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pat
     const double limit = std::max(std::min(concentrated * largest, much), *quantile);
 
     std::fill(parent_.begin(), parent_.end(), -1);
-    for (int v = 0; v < vertices; ++v) {
-        if (!(force_[v] > limit)) continue;
+    const auto take = [&](int v) {
         parent_[v] = v;
         for (const int node : edge_unknowns_of_vertex_[v]) parent_[node] = node;
+    };
+    std::vector<int> border;
+    for (int v = 0; v < vertices; ++v) {
+        if (!(force_[v] > limit)) continue;
+        take(v);
+        border.push_back(v);
+    }
+    for (int ring = 0; ring < rings; ++ring) {
+        std::vector<int> next;
+        for (const int v : border) {
+            for (const int t : triangles_of_vertex_[v]) {
+                for (const int other : model.input().mesh.triangles[t]) {
+                    if (parent_[other] >= 0) continue;
+                    take(other);
+                    next.push_back(other);
+                }
+            }
+        }
+        border = std::move(next);
     }
     const auto root = [&](int node) {
         while (parent_[node] != node) node = parent_[node] = parent_[parent_[node]];
@@ -116,20 +143,93 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const NodePattern& pat
     return found;
 }
 
-double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
-                                        double much) {
+/// Moves the vertices of a spot to where they would be had they moved from `from` as their surroundings have,
+/// by the harmonic continuation of that displacement on the layout; edge unknowns go back to those of `from`.
+void NonlinearElimination::carry_along(const Model& model, const std::vector<int>& nodes,
+                                       const Eigen::VectorXd& from, Eigen::VectorXd& x) const {
+    const TriangleMesh& mesh = model.input().mesh;
+    std::map<int, int> place;
+    std::vector<int> triangles;
+    for (const int node : nodes) {
+        if (node >= model.vertex_count()) continue;
+        place.emplace(node, static_cast<int>(place.size()));
+        const std::vector<int>& around = triangles_of_vertex_[node];
+        triangles.insert(triangles.end(), around.begin(), around.end());
+    }
+    std::sort(triangles.begin(), triangles.end());
+    triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+    const auto size = static_cast<Eigen::Index>(place.size());
+    Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(size, size);
+    Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(size, 3);
+    for (const int t : triangles) {
+        const Triangle& v = mesh.triangles[t];
+        const Eigen::Matrix<double, 2, 3> hats = hat_gradients(mesh, t);
+        const Mat3 local = layout_area(mesh, t) * (hats.transpose() * hats);
+        for (int i = 0; i < 3; ++i) {
+            const auto row = place.find(v[i]);
+            if (row == place.end()) continue;
+            for (int j = 0; j < 3; ++j) {
+                const auto column = place.find(v[j]);
+                if (column != place.end()) {
+                    laplacian(row->second, column->second) += local(i, j);
+                } else {
+                    const Eigen::Index at = 3 * static_cast<Eigen::Index>(v[j]);
+                    pull.row(row->second) -=
+                        local(i, j) * (x.segment<3>(at) - from.segment<3>(at)).transpose();
+                }
+            }
+        }
+    }
+    const Eigen::LLT<Eigen::MatrixXd> factor(laplacian);
+    if (factor.info() != Eigen::Success) return;
+    const Eigen::MatrixXd displacement = factor.solve(pull);
+    for (const auto& [vertex, row] : place) {
+        const Eigen::Index at = 3 * static_cast<Eigen::Index>(vertex);
+        x.segment<3>(at) = from.segment<3>(at) + displacement.row(row).transpose();
+    }
+    for (const int node : nodes) {
+        const int unknown = model.pattern().first_unknown(node);
+        if (node >= model.vertex_count()) x[unknown] = from[unknown];
+    }
+}
+
+double NonlinearElimination::relax_spots(const Model& model, const std::vector<std::vector<int>>& spots,
+                                         const Eigen::VectorXd* from, Eigen::VectorXd& x,
+                                         Eigen::VectorXd& gradient) const {
     std::vector<Model::Patch> patches;
-    for (const std::vector<int>& nodes : spots(model.pattern(), gradient, much))
-        patches.push_back(model.patch(nodes, held_));
+    for (const std::vector<int>& nodes : spots) patches.push_back(model.patch(nodes, held_));
     for (const Model::Patch& patch : patches) model.add_gradient(patch, x, -1.0, gradient);
     std::vector<double> fell(patches.size());
     // No element touches two spots: they do not see each other move.
-    parallel_for(patches.size(), [&](std::size_t i) { fell[i] = relax(model, patches[i], x); });
+    parallel_for(patches.size(), [&](std::size_t i) {
+        if (from != nullptr) {
+            DenseSums none;
+            const Eigen::VectorXd thrown = gather(patches[i], x);
+            const double energy = model.evaluate(patches[i], x, Order::value, none);
+            carry_along(model, spots[i], *from, x);
+            const double carried = model.evaluate(patches[i], x, Order::value, none);
+            if (carried < energy) {
+                fell[i] = energy - carried;
+            } else {
+                place(patches[i], thrown, x);
+            }
+        }
+        fell[i] += relax(model, patches[i], x);
+    });
     for (const Model::Patch& patch : patches) model.add_gradient(patch, x, 1.0, gradient);
     for (Eigen::Index i = 0; i < gradient.size(); ++i) {
         if (held_[i]) gradient[i] = 0.0;
     }
     return std::accumulate(fell.begin(), fell.end(), 0.0);
+}
+
+double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+    return relax_spots(model, spots(model, gradient, infinity, 0), nullptr, x, gradient);
+}
+
+double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,
+                                        Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+    return relax_spots(model, spots(model, gradient, much, rings_after_step), &from, x, gradient);
 }
 
 }  // namespace ruche

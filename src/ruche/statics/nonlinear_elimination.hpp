@@ -18,16 +18,27 @@ class NonlinearElimination {
     NonlinearElimination(const Model& model, const std::vector<char>& held);
 
     /// Moves x to lower energy and `gradient`, which is x's, along with it; returns by how much the energy
-    /// fell, mJ. A spot is where the force is a good part of the largest one, or more than `much` (N).
-    /// `model` is the one given to the constructor or differs from it in the material only.
-    double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
-                      double much = infinity);
+    /// fell, mJ. A spot is where the force is a good part of the largest one. `model` is the one given to the
+    /// constructor or differs from it in the material only.
+    double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient);
+
+    /// The same at the end x of a step from `from` that has thrown some spots far off, those with a force
+    /// above `much` (N) too and their surroundings: small elements at corners of strips fold over in a step
+    /// that suits all others, and would unfold by a third of the angle with each Newton step. Each begins
+    /// with the shape that it had at `from`, carried along by its surroundings, where that has less energy.
+    double after_step(const Model& model, const Eigen::VectorXd& from, double much, Eigen::VectorXd& x,
+                      Eigen::VectorXd& gradient);
 
   private:
-    std::vector<std::vector<int>> spots(const NodePattern& pattern, const Eigen::VectorXd& gradient,
-                                        double much);
+    std::vector<std::vector<int>> spots(const Model& model, const Eigen::VectorXd& gradient, double much,
+                                        int rings);
+    void carry_along(const Model& model, const std::vector<int>& nodes, const Eigen::VectorXd& from,
+                     Eigen::VectorXd& x) const;
+    double relax_spots(const Model& model, const std::vector<std::vector<int>>& spots,
+                       const Eigen::VectorXd* from, Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
 
     const std::vector<char>& held_;
+    std::vector<std::vector<int>> triangles_of_vertex_;
     std::vector<std::vector<int>> edge_unknowns_of_vertex_;  // nodes
     std::vector<double> force_;                              // per vertex, N
     std::vector<int> parent_;  // of the union-find forest over nodes; -1 = not in a spot

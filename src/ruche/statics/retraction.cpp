@@ -98,9 +98,7 @@ Retraction::Retraction(const Model& model, std::vector<int> vertex_order)
         Mat2 e;
         e << mesh.vertices[v[1]] - mesh.vertices[v[0]], mesh.vertices[v[2]] - mesh.vertices[v[0]];
         element.inverse_edges = e.inverse();
-        element.gradients.col(1) = element.inverse_edges.row(0).transpose();
-        element.gradients.col(2) = element.inverse_edges.row(1).transpose();
-        element.gradients.col(0) = -element.gradients.col(1) - element.gradients.col(2);
+        element.gradients = hat_gradients(mesh, t);
         total_area_ += element.area;
         elements_.push_back(element);
     }
