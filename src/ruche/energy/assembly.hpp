@@ -201,37 +201,45 @@ class TermAssembly {
         return energy;
     }
 
-    /// `h`: its lower triangle. Rows of a block in the pattern belong to the node with the larger number.
+    /// `h`: its lower triangle. Vertices come first, so the loops know the sizes of their blocks.
     template <class Nodes, class Matrix>
     void scatter(int element, const Nodes& nodes, const Matrix& h, double* values) const {
         const int* offset = offsets_.data() + static_cast<std::size_t>(element) * pairs;
-        for (int i = 0; i < slots; ++i) {
-            for (int j = 0; j <= i; ++j, ++offset) {
-                if (*offset < 0) continue;
-                double* out = values + *offset;
-                const int length = pattern_->column_length(std::min(nodes[i], nodes[j]));
-                const int r0 = local_start(i);
-                const int c0 = local_start(j);
-                if (i == j) {
-                    for (int c = 0; c < local_size(i); ++c, out += length) {
-                        for (int r = 0; r < local_size(i); ++r)
-                            out[r] += h(r0 + std::max(r, c), r0 + std::min(r, c));
-                    }
-                } else if (nodes[i] > nodes[j]) {
-                    for (int c = 0; c < local_size(j); ++c, out += length) {
-                        for (int r = 0; r < local_size(i); ++r) out[r] += h(r0 + r, c0 + c);
-                    }
-                } else if (nodes[i] < nodes[j]) {
-                    for (int c = 0; c < local_size(i); ++c, out += length) {
-                        for (int r = 0; r < local_size(j); ++r) out[r] += h(r0 + c, c0 + r);
-                    }
-                } else {
-                    // A node that fills two slots gets both blocks in its diagonal block.
-                    for (int c = 0; c < local_size(j); ++c, out += length) {
-                        for (int r = 0; r < local_size(i); ++r)
-                            out[r] += h(r0 + r, c0 + c) + h(r0 + c, c0 + r);
-                    }
-                }
+        for (int i = 0; i < T::vertex_slots; ++i) {
+            for (int j = 0; j <= i; ++j, ++offset) scatter_block<3, 3>(i, j, nodes, h, values, *offset);
+        }
+        for (int i = T::vertex_slots; i < slots; ++i) {
+            for (int j = 0; j < T::vertex_slots; ++j, ++offset)
+                scatter_block<1, 3>(i, j, nodes, h, values, *offset);
+            for (int j = T::vertex_slots; j <= i; ++j, ++offset)
+                scatter_block<1, 1>(i, j, nodes, h, values, *offset);
+        }
+    }
+
+    /// The block of slots i >= j. In the pattern its rows belong to the node with the larger number.
+    template <int Rows, int Columns, class Nodes, class Matrix>
+    void scatter_block(int i, int j, const Nodes& nodes, const Matrix& h, double* values, int offset) const {
+        if (offset < 0) return;
+        double* out = values + offset;
+        const int length = pattern_->column_length(std::min(nodes[i], nodes[j]));
+        const int r0 = local_start(i);
+        const int c0 = local_start(j);
+        if (i == j) {
+            for (int c = 0; c < Columns; ++c, out += length) {
+                for (int r = 0; r < Rows; ++r) out[r] += h(r0 + std::max(r, c), r0 + std::min(r, c));
+            }
+        } else if (nodes[i] > nodes[j]) {
+            for (int c = 0; c < Columns; ++c, out += length)
+                Eigen::Map<Eigen::Matrix<double, Rows, 1>>(out) += h.template block<Rows, 1>(r0, c0 + c);
+        } else if (nodes[i] < nodes[j]) {
+            for (int c = 0; c < Rows; ++c, out += length) {
+                Eigen::Map<Eigen::Matrix<double, Columns, 1>>(out) +=
+                    h.template block<1, Columns>(r0 + c, c0).transpose();
+            }
+        } else {
+            // A node that fills two slots gets both blocks in its diagonal block.
+            for (int c = 0; c < Columns; ++c, out += length) {
+                for (int r = 0; r < Rows; ++r) out[r] += h(r0 + r, c0 + c) + h(r0 + c, c0 + r);
             }
         }
     }

@@ -76,7 +76,7 @@ Local<12> ContactBarrier::evaluate(int element, const Unknowns& x, Order order) 
     const Vec3 r = shortest_vector(closest, at);
     const double scale = 1.0 / (pair.reach * pair.reach);
     const double u = scale * r.squaredNorm();
-    Local<12> local;
+    Local<12> local(order);
     if (u >= 1.0) return local;
     const Scalar b = barrier(u);
     const double k = stiffness_ * pair.area;

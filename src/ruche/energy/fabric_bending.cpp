@@ -12,7 +12,7 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
     const DihedralFrame right = dihedral_frame(b, a, x.position(hinge.vertices[3]));
     const double tangent = half_angle_tangent(left, right);
     const double k = hinge.stiffness;
-    Local<12> local;
+    Local<12> local(order);
     local.value = 2.0 * k * tangent * tangent;
     if (order == Order::value) return local;
 

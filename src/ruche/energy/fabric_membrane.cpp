@@ -38,7 +38,7 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     const Prepared& e = elements_[element];
     const Corners v = corners(e.vertices, x);
     const FabricResponse response = law_(e.strain_of_lengths * (squared_edge_lengths(v) - e.relaxed_lengths));
-    Local<9> local;
+    Local<9> local(order);
     local.value = e.volume * response.energy;
     if (order == Order::value || !std::isfinite(local.value)) return local;
 

@@ -101,6 +101,9 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
     Kinematics k;
     k.v = {x.position(e.nodes[0]), x.position(e.nodes[1]), x.position(e.nodes[2])};
     k.lengths = squared_edge_lengths(k.v);
+    const Vec3 cross = (k.v[1] - k.v[0]).cross(k.v[2] - k.v[0]);
+    const double twice_area = cross.norm();
+    const Vec3 normal = (1.0 / twice_area) * cross;
     for (int i = 0; i < 3; ++i) {
         k.hinged[i] = e.nodes[3 + i] >= 0;
         const double y = e.nodes[6 + i] >= 0 ? x.edge_unknown(e.nodes[6 + i] - x.vertex_count) : 0.0;
@@ -110,7 +113,7 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
         }
         const Vec3& start = k.v[(i + 1) % 3];
         const Vec3& end = k.v[(i + 2) % 3];
-        k.own[i] = dihedral_frame(start, end, k.v[i]);
+        k.own[i] = dihedral_frame(start, end, k.v[i], normal, twice_area);
         k.flap[i] = dihedral_frame(end, start, x.position(e.nodes[3 + i]));
         k.altitude[i] = k.own[i].h;
         k.phi[i] = 0.5 * dihedral_angle(k.own[i], k.flap[i]) + e.y_to_xi[i] * y;
@@ -135,7 +138,7 @@ Local<21> LaminateTerm::evaluate(int element, const Unknowns& x, Order order) co
     const Kinematics k = kinematics(e, x);
     const FormVector strain = k.strain(e.layout_lengths);
     const FormVector pull = e.quadratic * strain;
-    Local<21> local;
+    Local<21> local(order);
     local.value = e.constant + strain.dot(e.linear + 0.5 * pull);
     if (!has_fabric_law()) {
         if (order != Order::value) differentiate(e, k, {strain, e.linear + pull, e.quadratic}, order, local);

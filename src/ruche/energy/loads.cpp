@@ -11,7 +11,7 @@ Eigen::VectorXd lumped_mass(int vertex_count, const std::vector<AreaMass>& trian
 }
 
 Local<3> TableContact::evaluate(int element, const Unknowns& x, Order order) const {
-    Local<3> local;
+    Local<3> local(order);
     const double gap = plane_.up.dot(x.position(element)) - plane_.height;
     if (!(gap < 0.0)) return local;
     const double k = stiffness_[element];

@@ -50,7 +50,7 @@ Local<13> RodEdge::evaluate(int element, const Unknowns& x, Order order) const {
     const Hinge hinge = hinge_of(rod, x);
     const HalfHinge left(rod.hinge_stiffness, hinge.half_angle - hinge.phi);
     const HalfHinge right(rod.hinge_stiffness, hinge.half_angle + hinge.phi);
-    Local<13> local;
+    Local<13> local(order);
     local.value = 0.5 * stretching * strain * strain + left.value + right.value;
     if (order == Order::value) return local;
 

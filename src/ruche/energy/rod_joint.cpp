@@ -139,7 +139,7 @@ Local<23> RodJoint::evaluate(int element, const Unknowns& x, Order order) const 
     const Vec3 kappa = 2.0 / w * q.tail<3>();
     const Vec3 stiffness = joint.stiffness * (2.0 / (joint.lengths[0] + joint.lengths[1]));
     const Vec3 moment = stiffness.cwiseProduct(kappa - joint.rest);
-    Local<23> local;
+    Local<23> local(order);
     local.value = 0.5 * moment.dot(kappa - joint.rest);
     if (order == Order::value || !std::isfinite(local.value)) return local;
 

@@ -16,13 +16,18 @@ enum class Order { value, gradient, hessian, gauss_newton };
 
 constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }
 
-/// Value, gradient and Hessian of one element; what was not asked for is zero. Of the Hessian only the lower
-/// triangle (row >= column) counts, whatever stands above it.
+/// Value, gradient and Hessian of one element, zero as far as `order` asks for them; the rest is left as it
+/// is. Of the Hessian only the lower triangle (row >= column) counts, whatever stands above it.
 template <int Size>
 struct Local {
     double value = 0.0;
-    Eigen::Matrix<double, Size, 1> gradient = Eigen::Matrix<double, Size, 1>::Zero();
-    Eigen::Matrix<double, Size, Size> hessian = Eigen::Matrix<double, Size, Size>::Zero();
+    Eigen::Matrix<double, Size, 1> gradient;
+    Eigen::Matrix<double, Size, Size> hessian;
+
+    explicit Local(Order order) {
+        if (order != Order::value) gradient.setZero();
+        if (wants_hessian(order)) hessian.setZero();
+    }
 
     Eigen::Matrix<double, Size, Size> full_hessian() const {
         return hessian.template selfadjointView<Eigen::Lower>();
@@ -36,9 +41,8 @@ void add_lower_product(const Eigen::Matrix<double, Size, 1>& left,
                        const Eigen::Matrix<double, Size, 1>& right, Matrix& lower) {
     static_assert(Size % 3 == 0);
     for (int column = 0; column < Size; ++column) {
-        for (int row = column - column % 3; row < Size; row += 3) {
-            for (int c = 0; c < 3; ++c) lower(row + c, column) += left[row + c] * right[column];
-        }
+        for (int row = column - column % 3; row < Size; row += 3)
+            lower.template block<3, 1>(row, column) += right[column] * left.template segment<3>(row);
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -62,39 +63,46 @@ struct DihedralFrame {
     /// three rows and columns from 3 slot[i] on.
     template <class Matrix>
     void add_second_derivative(double weight, const std::array<int, 3>& slot, Matrix& hessian) const {
-        const Mat3 un = -weight * (u * n.transpose() + n * u.transpose());
-        const Mat3 en = -weight * (e * n.transpose());
-        const Mat3 ne = en.transpose();
+        // The block of corners i and j is -weight (p n^T + n s^T), p = k u + l e, s = k u + m e.
+        const Vec3 weighted = -weight * n;
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j <= i; ++j) {
-                const double sym = q[i] * q[j] / (h * h) + 0.5 * r[i] * r[j];
-                const Mat3 block = sym * un + (q[i] * r[j] / h) * en + (r[i] * q[j] / h) * ne;
-                if (slot[i] >= slot[j]) {
-                    hessian.template block<3, 3>(3 * slot[i], 3 * slot[j]) += block;
-                } else {
-                    hessian.template block<3, 3>(3 * slot[j], 3 * slot[i]) += block.transpose();
-                }
+                const Vec3 along_u = (q[i] * q[j] / (h * h) + 0.5 * r[i] * r[j]) * u;
+                const Vec3 p = along_u + (q[i] * r[j] / h) * e;
+                const Vec3 s = along_u + (r[i] * q[j] / h) * e;
+                const bool in_order = slot[i] >= slot[j];
+                const Vec3& left = in_order ? p : s;
+                const Vec3& right = in_order ? s : p;
+                auto block = hessian.template block<3, 3>(3 * std::max(slot[i], slot[j]),
+                                                          3 * std::min(slot[i], slot[j]));
+                block.noalias() += left * weighted.transpose();
+                block.noalias() += weighted * right.transpose();
             }
         }
     }
 };
 
-/// The frame of triangle (a, b, c) at its edge a-b.
-inline DihedralFrame dihedral_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+/// The frame at its edge a-b of a triangle (a, b, c) whose unit normal and area are known.
+inline DihedralFrame dihedral_frame(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& normal,
+                                    double twice_area) {
     DihedralFrame f;
     const Vec3 ab = b - a;
-    const Vec3 ac = c - a;
-    const double length = ab.norm();
-    const Vec3 normal = ab.cross(ac);
-    const double twice_area = normal.norm();
-    f.e = ab / length;
-    f.n = normal / twice_area;
+    const double per_length = 1.0 / ab.norm();
+    f.e = per_length * ab;
+    f.n = normal;
     f.u = f.n.cross(f.e);
-    f.h = twice_area / length;
-    const double t = ac.dot(f.e) / length;
+    f.h = twice_area * per_length;
+    const double t = (c - a).dot(f.e) * per_length;
     f.q = {t - 1.0, -t, 1.0};
-    f.r = {-1.0 / length, 1.0 / length, 0.0};
+    f.r = {-per_length, per_length, 0.0};
     return f;
+}
+
+/// The frame of triangle (a, b, c) at its edge a-b.
+inline DihedralFrame dihedral_frame(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 normal = (b - a).cross(c - a);
+    const double twice_area = normal.norm();
+    return dihedral_frame(a, b, c, (1.0 / twice_area) * normal, twice_area);
 }
 
 /// theta from the frames of the two triangles at their common edge.

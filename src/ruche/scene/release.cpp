@@ -45,7 +45,7 @@ std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& fine
         } else {
             options.size_mm *= 2.0;
             options.fabric_size_mm *= 2.0;
-            options.elements_across = std::max(1.0, 0.5 * options.elements_across);
+            options.elements_across = std::max(0.5, 0.5 * options.elements_across);
         }
         PrintMesh layout = mesh_pattern(pattern, options);
         if (layout.mesh.triangle_count() > worth * count) break;

@@ -223,9 +223,11 @@ void Newton::relax_while(Eigen::VectorXd& x, double worth) {
     constexpr int most_sweeps = 10;
     double energy = evaluate(x, Order::gradient, trial_).total();
     for (int sweep = 0; sweep < most_sweeps && std::isfinite(energy); ++sweep) {
+        // Forces all over the sheet are the work of Newton's method, which is cheaper there.
+        const bool last = !elimination_.is_concentrated(trial_.gradient);
         const double fell = elimination_(model(), x, trial_.gradient);
         energy -= fell;
-        if (fell < worth * energy) break;
+        if (last || fell < worth * energy) break;
     }
 }
 

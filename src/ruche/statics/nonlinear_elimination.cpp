@@ -85,18 +85,28 @@ NonlinearElimination::NonlinearElimination(const Model& model, const std::vector
     }
 }
 
+NonlinearElimination::ForceRange NonlinearElimination::measure_forces(const Eigen::VectorXd& gradient) {
+    const auto vertices = static_cast<Eigen::Index>(force_.size());
+    for (Eigen::Index v = 0; v < vertices; ++v) force_[v] = gradient.segment<3>(3 * v).norm();
+    std::vector<double> sorted = force_;
+    const auto hardest = sorted.begin() + static_cast<std::ptrdiff_t>((1.0 - most_vertices) * vertices);
+    std::nth_element(sorted.begin(), hardest, sorted.end());
+    return {.largest = *std::max_element(hardest, sorted.end()), .of_hardest = *hardest};
+}
+
+bool NonlinearElimination::is_concentrated(const Eigen::VectorXd& gradient) {
+    const ForceRange force = measure_forces(gradient);
+    return force.of_hardest < concentrated * force.largest;
+}
+
 /// Nodes of each spot: vertices under a large part of the largest force or under `much`, `rings` of vertices
 /// around them, and the edge unknowns at all of these, joined where an element touches both.
 std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, const Eigen::VectorXd& gradient,
                                                           double much, int rings) {
     const NodePattern& pattern = model.pattern();
     const int vertices = pattern.vertex_count();
-    for (int v = 0; v < vertices; ++v) force_[v] = gradient.segment<3>(3 * v).norm();
-    std::vector<double> sorted = force_;
-    const auto quantile = sorted.begin() + static_cast<std::ptrdiff_t>((1.0 - most_vertices) * vertices);
-    std::nth_element(sorted.begin(), quantile, sorted.end());
-    const double largest = *std::max_element(quantile, sorted.end());
-    const double limit = std::max(std::min(concentrated * largest, much), *quantile);
+    const ForceRange force = measure_forces(gradient);
+    const double limit = std::max(std::min(concentrated * force.largest, much), force.of_hardest);
 
     std::fill(parent_.begin(), parent_.end(), -1);
     const auto take = [&](int v) {
@@ -185,7 +195,9 @@ void NonlinearElimination::carry_along(const Model& model, const std::vector<int
     const Eigen::MatrixXd displacement = factor.solve(pull);
     for (const auto& [vertex, row] : place) {
         const Eigen::Index at = 3 * static_cast<Eigen::Index>(vertex);
-        x.segment<3>(at) = from.segment<3>(at) + displacement.row(row).transpose();
+        for (int c = 0; c < 3; ++c) {
+            if (!held_[at + c]) x[at + c] = from[at + c] + displacement(row, c);
+        }
     }
     for (const int node : nodes) {
         const int unknown = model.pattern().first_unknown(node);

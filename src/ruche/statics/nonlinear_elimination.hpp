@@ -17,6 +17,9 @@ class NonlinearElimination {
     /// `held`: one flag per unknown that a support fixes; must outlive this.
     NonlinearElimination(const Model& model, const std::vector<char>& held);
 
+    /// Whether the largest forces are concentrated in few spots.
+    bool is_concentrated(const Eigen::VectorXd& gradient);
+
     /// Moves x to lower energy and `gradient`, which is x's, along with it; returns by how much the energy
     /// fell, mJ. A spot is where the force is a good part of the largest one. `model` is the one given to the
     /// constructor or differs from it in the material only.
@@ -30,6 +33,11 @@ class NonlinearElimination {
                       Eigen::VectorXd& gradient);
 
   private:
+    struct ForceRange {
+        double largest;     // on a vertex, N
+        double of_hardest;  // the least force on a vertex that may belong to a spot
+    };
+    ForceRange measure_forces(const Eigen::VectorXd& gradient);
     std::vector<std::vector<int>> spots(const Model& model, const Eigen::VectorXd& gradient, double much,
                                         int rings);
     void carry_along(const Model& model, const std::vector<int>& nodes, const Eigen::VectorXd& from,

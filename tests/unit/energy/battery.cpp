@@ -118,10 +118,7 @@ void check_orders(const Energy& energy, const Eigen::VectorXd& x) {
     const Sums hessian = energy.evaluate(x, Order::hessian);
     CHECK(value.value == hessian.value);
     CHECK(gradient.value == hessian.value);
-    CHECK(value.gradient.isZero(0.0));
     CHECK(gradient.gradient == hessian.gradient);
-    CHECK(value.hessian.isZero(0.0));
-    CHECK(gradient.hessian.isZero(0.0));
     CHECK(largest(hessian.hessian - hessian.hessian.transpose()) <= 1e-13 * largest(hessian.hessian));
     const Sums part = energy.evaluate(x, Order::gauss_newton);
     CHECK(part.value == hessian.value);

@@ -79,8 +79,8 @@ Motion mirror_z();
 /// Central differences along random directions at steps h, h/2, ... h/16: extrapolated by Richardson they
 /// agree with gradient and Hessian to 1e-8, and the plain ones approach them with order 2.
 void check_derivatives(const Energy& energy, const Eigen::VectorXd& x, double step = 4e-3);
-/// The same value and gradient, to the bit, at every Order; what was not asked for is zero; the Hessian is
-/// symmetric; both Gauss-Newton forms are positive semidefinite.
+/// The same value and gradient, to the bit, at every Order that asks for them; the Hessian is symmetric; both
+/// Gauss-Newton forms are positive semidefinite.
 void check_orders(const Energy& energy, const Eigen::VectorXd& x);
 /// Energy `moved` at the moved state equals `energy` at x; gradient and Hessian move along.
 void check_invariance(const Energy& energy, const Energy& moved, const Motion& motion,
