@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "ruche/core/parallel.hpp"
 
@@ -16,8 +17,10 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
-constexpr int rings_after_step = 2;   // of vertices around a spot that a step has thrown off
-constexpr double good_enough = 0.01;  // of the spot's first residual: its surroundings will move too
+constexpr int most_rings = 2;  // of vertices around a spot that a step has thrown off
+constexpr std::size_t most_nodes_with_rings = 150;
+constexpr double most_with_rings = 0.05;  // share of all nodes
+constexpr double good_enough = 0.01;      // of the spot's first residual: its surroundings will move too
 
 Eigen::VectorXd gather(const Model::Patch& patch, const Eigen::VectorXd& x) {
     Eigen::VectorXd values(patch.size());
@@ -147,9 +150,7 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, co
         if (parent_[node] >= 0) by_root[root(node)].push_back(node);
     }
     std::vector<std::vector<int>> found;
-    for (auto& [first, nodes] : by_root) {
-        if (nodes.size() <= most_nodes) found.push_back(std::move(nodes));
-    }
+    for (auto& [first, nodes] : by_root) found.push_back(std::move(nodes));
     return found;
 }
 
@@ -205,9 +206,10 @@ void NonlinearElimination::carry_along(const Model& model, const std::vector<int
     }
 }
 
-double NonlinearElimination::relax_spots(const Model& model, const std::vector<std::vector<int>>& spots,
+double NonlinearElimination::relax_spots(const Model& model, std::vector<std::vector<int>> spots,
                                          const Eigen::VectorXd* from, Eigen::VectorXd& x,
                                          Eigen::VectorXd& gradient) const {
+    std::erase_if(spots, [](const std::vector<int>& nodes) { return nodes.size() > most_nodes; });
     std::vector<Model::Patch> patches;
     for (const std::vector<int>& nodes : spots) patches.push_back(model.patch(nodes, held_));
     for (const Model::Patch& patch : patches) model.add_gradient(patch, x, -1.0, gradient);
@@ -241,7 +243,21 @@ double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, 
 
 double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,
                                         Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
-    return relax_spots(model, spots(model, gradient, much, rings_after_step), &from, x, gradient);
+    std::vector<std::vector<int>> found;
+    for (int rings = most_rings; rings >= 0; --rings) {
+        found = spots(model, gradient, much, rings);
+        std::size_t largest = 0;
+        std::size_t all = 0;
+        for (const std::vector<int>& nodes : found) {
+            largest = std::max(largest, nodes.size());
+            all += nodes.size();
+        }
+        // On a coarse mesh the surroundings of a few spots are soon the whole sheet.
+        if (largest <= most_nodes_with_rings &&
+            static_cast<double>(all) <= most_with_rings * model.pattern().node_count())
+            break;
+    }
+    return relax_spots(model, std::move(found), &from, x, gradient);
 }
 
 }  // namespace ruche

@@ -26,9 +26,10 @@ class NonlinearElimination {
     double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
     /// The same at the end x of a step from `from` that has thrown some spots far off, those with a force
-    /// above `much` (N) too and their surroundings: small elements at corners of strips fold over in a step
-    /// that suits all others, and would unfold by a third of the angle with each Newton step. Each begins
-    /// with the shape that it had at `from`, carried along by its surroundings, where that has less energy.
+    /// above `much` (N) too and, as far as that stays cheap, their surroundings: small elements at corners of
+    /// strips fold over in a step that suits all others, and would unfold by a third of the angle with each
+    /// Newton step. Each begins with the shape that it had at `from`, carried along by its surroundings,
+    /// where that has less energy.
     double after_step(const Model& model, const Eigen::VectorXd& from, double much, Eigen::VectorXd& x,
                       Eigen::VectorXd& gradient);
 
@@ -42,8 +43,8 @@ class NonlinearElimination {
                                         int rings);
     void carry_along(const Model& model, const std::vector<int>& nodes, const Eigen::VectorXd& from,
                      Eigen::VectorXd& x) const;
-    double relax_spots(const Model& model, const std::vector<std::vector<int>>& spots,
-                       const Eigen::VectorXd* from, Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
+    double relax_spots(const Model& model, std::vector<std::vector<int>> spots, const Eigen::VectorXd* from,
+                       Eigen::VectorXd& x, Eigen::VectorXd& gradient) const;
 
     const std::vector<char>& held_;
     std::vector<std::vector<int>> triangles_of_vertex_;
