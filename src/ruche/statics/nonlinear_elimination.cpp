@@ -150,6 +150,7 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, co
         if (parent_[node] >= 0) by_root[root(node)].push_back(node);
     }
     std::vector<std::vector<int>> found;
+    found.reserve(by_root.size());
     for (auto& [first, nodes] : by_root) found.push_back(std::move(nodes));
     return found;
 }
@@ -211,6 +212,7 @@ double NonlinearElimination::relax_spots(const Model& model, std::vector<std::ve
                                          Eigen::VectorXd& gradient) const {
     std::erase_if(spots, [](const std::vector<int>& nodes) { return nodes.size() > most_nodes; });
     std::vector<Model::Patch> patches;
+    patches.reserve(spots.size());
     for (const std::vector<int>& nodes : spots) patches.push_back(model.patch(nodes, held_));
     for (const Model::Patch& patch : patches) model.add_gradient(patch, x, -1.0, gradient);
     std::vector<double> fell(patches.size());
