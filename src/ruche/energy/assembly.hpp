@@ -236,7 +236,7 @@ class TermAssembly {
                 Eigen::Map<Eigen::Matrix<double, Columns, 1>>(out) +=
                     h.template block<1, Columns>(r0 + c, c0).transpose();
             }
-        } else {
+        } else if constexpr (Rows == Columns) {
             // A node that fills two slots gets both blocks in its diagonal block.
             for (int c = 0; c < Columns; ++c, out += length) {
                 for (int r = 0; r < Rows; ++r) out[r] += h(r0 + r, c0 + c) + h(r0 + c, c0 + r);

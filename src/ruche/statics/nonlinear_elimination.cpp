@@ -102,15 +102,17 @@ bool NonlinearElimination::is_concentrated(const Eigen::VectorXd& gradient) {
     return force.of_hardest < concentrated * force.largest;
 }
 
-/// Nodes of each spot: vertices under a large part of the largest force or under `much`, `rings` of vertices
-/// around them, and the edge unknowns at all of these, joined where an element touches both.
-std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, const Eigen::VectorXd& gradient,
-                                                          double much, int rings) {
+/// Above it a vertex belongs to a spot: a large part of the largest force, or `much`.
+double NonlinearElimination::limiting_force(const Eigen::VectorXd& gradient, double much) {
+    const ForceRange force = measure_forces(gradient);
+    return std::max(std::min(concentrated * force.largest, much), force.of_hardest);
+}
+
+/// Nodes of each spot: vertices whose force, measured last, is above `limit`, `rings` of vertices around
+/// them, and the edge unknowns at all of these, joined where an element touches both.
+std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, double limit, int rings) {
     const NodePattern& pattern = model.pattern();
     const int vertices = pattern.vertex_count();
-    const ForceRange force = measure_forces(gradient);
-    const double limit = std::max(std::min(concentrated * force.largest, much), force.of_hardest);
-
     std::fill(parent_.begin(), parent_.end(), -1);
     const auto take = [&](int v) {
         parent_[v] = v;
@@ -160,17 +162,17 @@ std::vector<std::vector<int>> NonlinearElimination::spots(const Model& model, co
 void NonlinearElimination::carry_along(const Model& model, const std::vector<int>& nodes,
                                        const Eigen::VectorXd& from, Eigen::VectorXd& x) const {
     const TriangleMesh& mesh = model.input().mesh;
-    std::map<int, int> place;
+    std::map<int, int> row_of;
     std::vector<int> triangles;
     for (const int node : nodes) {
         if (node >= model.vertex_count()) continue;
-        place.emplace(node, static_cast<int>(place.size()));
+        row_of.emplace(node, static_cast<int>(row_of.size()));
         const std::vector<int>& around = triangles_of_vertex_[node];
         triangles.insert(triangles.end(), around.begin(), around.end());
     }
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    const auto size = static_cast<Eigen::Index>(place.size());
+    const auto size = static_cast<Eigen::Index>(row_of.size());
     Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(size, size);
     Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(size, 3);
     for (const int t : triangles) {
@@ -178,11 +180,11 @@ void NonlinearElimination::carry_along(const Model& model, const std::vector<int
         const Eigen::Matrix<double, 2, 3> hats = hat_gradients(mesh, t);
         const Mat3 local = layout_area(mesh, t) * (hats.transpose() * hats);
         for (int i = 0; i < 3; ++i) {
-            const auto row = place.find(v[i]);
-            if (row == place.end()) continue;
+            const auto row = row_of.find(v[i]);
+            if (row == row_of.end()) continue;
             for (int j = 0; j < 3; ++j) {
-                const auto column = place.find(v[j]);
-                if (column != place.end()) {
+                const auto column = row_of.find(v[j]);
+                if (column != row_of.end()) {
                     laplacian(row->second, column->second) += local(i, j);
                 } else {
                     const Eigen::Index at = 3 * static_cast<Eigen::Index>(v[j]);
@@ -195,7 +197,7 @@ void NonlinearElimination::carry_along(const Model& model, const std::vector<int
     const Eigen::LLT<Eigen::MatrixXd> factor(laplacian);
     if (factor.info() != Eigen::Success) return;
     const Eigen::MatrixXd displacement = factor.solve(pull);
-    for (const auto& [vertex, row] : place) {
+    for (const auto& [vertex, row] : row_of) {
         const Eigen::Index at = 3 * static_cast<Eigen::Index>(vertex);
         for (int c = 0; c < 3; ++c) {
             if (!held_[at + c]) x[at + c] = from[at + c] + displacement(row, c);
@@ -240,14 +242,15 @@ double NonlinearElimination::relax_spots(const Model& model, std::vector<std::ve
 }
 
 double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
-    return relax_spots(model, spots(model, gradient, infinity, 0), nullptr, x, gradient);
+    return relax_spots(model, spots(model, limiting_force(gradient, infinity), 0), nullptr, x, gradient);
 }
 
 double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,
                                         Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+    const double limit = limiting_force(gradient, much);
     std::vector<std::vector<int>> found;
     for (int rings = most_rings; rings >= 0; --rings) {
-        found = spots(model, gradient, much, rings);
+        found = spots(model, limit, rings);
         std::size_t largest = 0;
         std::size_t all = 0;
         for (const std::vector<int>& nodes : found) {

@@ -27,8 +27,8 @@ class NonlinearElimination {
 
     /// The same at the end x of a step from `from` that has thrown some spots far off, those with a force
     /// above `much` (N) too and, as far as that stays cheap, their surroundings: small elements at corners of
-    /// strips fold over in a step that suits all others, and would unfold by a third of the angle with each
-    /// Newton step. Each begins with the shape that it had at `from`, carried along by its surroundings,
+    /// strips fold over in a step that suits all others, and each Newton step would open such a fold by a
+    /// third more only. Each begins with the shape that it had at `from`, carried along by its surroundings,
     /// where that has less energy.
     double after_step(const Model& model, const Eigen::VectorXd& from, double much, Eigen::VectorXd& x,
                       Eigen::VectorXd& gradient);
@@ -39,8 +39,8 @@ class NonlinearElimination {
         double of_hardest;  // the least force on a vertex that may belong to a spot
     };
     ForceRange measure_forces(const Eigen::VectorXd& gradient);
-    std::vector<std::vector<int>> spots(const Model& model, const Eigen::VectorXd& gradient, double much,
-                                        int rings);
+    double limiting_force(const Eigen::VectorXd& gradient, double much);
+    std::vector<std::vector<int>> spots(const Model& model, double limit, int rings);
     void carry_along(const Model& model, const std::vector<int>& nodes, const Eigen::VectorXd& from,
                      Eigen::VectorXd& x) const;
     double relax_spots(const Model& model, std::vector<std::vector<int>> spots, const Eigen::VectorXd* from,
