@@ -12,6 +12,7 @@ folder, or does not close in order. Failures are told with their numbers; the ex
 import argparse
 import base64
 import collections
+import errno
 import json
 import random
 import re
@@ -140,8 +141,9 @@ class Server:
                     if not piece:
                         break
                     answer += piece
-            except (BrokenPipeError, ConnectionResetError):
-                pass  # refused while we still talk
+            except OSError as error:
+                if error.errno not in (errno.EPIPE, errno.ECONNRESET, errno.ENOTCONN):  # refused while we still talk
+                    raise
             return answer
 
     def close(self):
