@@ -49,7 +49,8 @@ ElementStep element_step(const Edges& d, const Edges& dd) {
 Edges edge_change(const Edges& d, const ElementStep& step, double t) {
     // Squared lengths stay linear in t; the floor and the limits tame elements that a step would crush or
     // tear.
-    const Eigen::SelfAdjointEigenSolver<Mat2> eigen(step.strain);
+    Eigen::SelfAdjointEigenSolver<Mat2> eigen;
+    eigen.computeDirect(step.strain);
     Vec2 stretch;
     for (int i = 0; i < 2; ++i) {
         stretch[i] = std::clamp(std::sqrt(std::max(0.05, 1.0 + 2.0 * t * eigen.eigenvalues()[i])), 0.5, 1.6);
