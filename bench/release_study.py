@@ -2,9 +2,9 @@
 """What a release costs: scenes x sizes x threads, how it grows, and the laminate element against the tests' oracle.
 
 usage: bench/release_study.py [FILE.json] [--scenes strips,torus] [--sizes 5000,20000,80000,200000] [--threads 1,2]
-                              [--build build/release] [--again]
+                              [--repeats 3] [--build build/release] [--again]
 
-Runs `ruche bench` for each row and writes FILE.json (default build/release_study.json) and the same as Markdown
+Runs `ruche bench` three times for each row, keeps the run with the median of equivalent factorisations, and writes FILE.json (default build/release_study.json) and the same as Markdown
 tables beside it, after every row: when it is stopped, the next start goes on where it was; --again begins anew. Let
 nothing else run meanwhile. Needs a release build with benchmarks (tools/bench makes one).
 
@@ -40,6 +40,7 @@ COLUMNS = (  # title, how to write it
     ("iterations", lambda r: f"{r['iterations']}"),
     ("factorisations", lambda r: f"{r['factorizations']}"),
     ("equivalent factorisations", lambda r: f"{r['equivalent_factorizations']:.1f}"),
+    ("least to most", lambda r: "{:.1f} to {:.1f}".format(*r.get("equivalent_factorizations_spread", [math.nan] * 2))),
     ("peak MB", lambda r: f"{r['peak_mb']:.0f}"),
     ("of the factor", lambda r: f"{r['peak_over_factor']:.2f}"),
     ("certain", lambda r: "yes" if certain(r) else "NO"),
@@ -104,6 +105,16 @@ def measure(build, scene, size, threads):
     return json.loads(run.stdout)
 
 
+def median(results):
+    """The run with the median of equivalent factorisations, and the least and the most of all runs."""
+    failed = [result for result in results if "error" in result or not certain(result)]
+    if failed:
+        return failed[0]
+    ranked = sorted(results, key=lambda result: result["equivalent_factorizations"])
+    spread = [ranked[0]["equivalent_factorizations"], ranked[-1]["equivalent_factorizations"]]
+    return ranked[len(ranked) // 2] | {"equivalent_factorizations_spread": spread}
+
+
 def measure_element(build):
     out = subprocess.check_output(
         [build / "bench/ruche_bench", "--benchmark_filter=^laminate_element", "--benchmark_format=json"],
@@ -124,6 +135,7 @@ def main():
     parser.add_argument("--scenes", type=lambda text: text.split(","), default=SCENES)
     parser.add_argument("--sizes", type=numbers, default=[5000, 20000, 80000, 200000])
     parser.add_argument("--threads", type=numbers, default=[1, 2])
+    parser.add_argument("--repeats", type=int, default=3)
     parser.add_argument("--build", type=Path, default=ROOT / "build/release")
     parser.add_argument("--again", action="store_true", help="forget the rows that the file has")
     arguments = parser.parse_args()
@@ -145,7 +157,8 @@ def main():
                 key = f"{scene} {size} {threads}"
                 if key in study["runs"]:
                     continue
-                result = study["runs"][key] = measure(arguments.build, scene, size, threads)
+                result = study["runs"][key] = median(
+                    [measure(arguments.build, scene, size, threads) for _ in range(arguments.repeats)])
                 save()
                 took = result.get("error") or f"{result['release_cpu_s']:.3g} s, certain: {certain(result)}"
                 print(f"{key}: {took}", flush=True)
