@@ -1,10 +1,12 @@
-// How little the finest mesh can do with: its solve alone, from two starts that no coarser mesh can give, beside
-// the whole release. The one is the shape on the very same mesh with half a per cent more pre-stretch: nothing is
-// carried over at all. The other is carried over from the converged shape of another mesh with nearly as many triangles.
-// The former costs what every scheme costs that goes on with Newton's method on the finest mesh, the difference to
-// the latter is the price of carrying over, the rest of the release is coarser meshes and what is done once.
+// How little the finest mesh can do with: its solve alone, from two starts that no coarser mesh can give,
+// beside the whole release. The one is the shape on the very same mesh with half a per cent more pre-stretch:
+// nothing is carried over at all. The other is carried over from the converged shape of another mesh with
+// nearly as many triangles. The former costs what every scheme costs that goes on with Newton's method on the
+// finest mesh, the difference to the latter is the price of carrying over, the rest of the release is coarser
+// meshes and what is done once.
 //
-//     finest_mesh_limit [TRIANGLES] [SCENE...]      (default 20000, all scenes of `ruche bench` but the drawing)
+//     finest_mesh_limit [TRIANGLES] [SCENE...]      (default 20000, all scenes of `ruche bench` but the
+//     drawing)
 //
 // One thread. Costs are processor time over that of one factorisation of the final Hessian.
 #include <fmt/format.h>
@@ -94,8 +96,9 @@ void study(const std::string& name, int triangles) {
     const std::vector<Print> print = laminated_print(other.scene(), other.layout);
     const Eigen::VectorXd near =
         release(other.scene(), other.layout, model_of(other.scene(), other.layout), {}).equilibrium.x;
-    const Effort from_other =
-        effort_of([&] { return solve(model, options, {}, LayoutShape{other.layout.mesh, print, near}); });
+    const Effort from_other = effort_of([&] {
+        return solve(model, options, {}, LayoutShape{other.layout.mesh, print, near});
+    });
 
     std::optional<Release> released;
     const Effort whole = effort_of([&] {
@@ -103,8 +106,8 @@ void study(const std::string& name, int triangles) {
         return released->equilibrium;
     });
     const double unit = factorization_seconds(released->model, released->equilibrium.x);
-    fmt::print("| {} | {} | {} | {} | {} |\n", name, finest.layout.mesh.triangle_count(), cells(from_same, unit),
-               cells(from_other, unit), cells(whole, unit));
+    fmt::print("| {} | {} | {} | {} | {} |\n", name, finest.layout.mesh.triangle_count(),
+               cells(from_same, unit), cells(from_other, unit), cells(whole, unit));
     std::fflush(stdout);
 }
 
@@ -116,8 +119,9 @@ int main(int argc, char** argv) {
     std::vector<std::string> scenes(argv + std::min(argc, 2), argv + argc);
     if (scenes.empty()) scenes = {"strips", "staggered", "torus", "stars"};
     ruche::set_thread_count(1);
-    fmt::print("Iterations / factorisations on the finest mesh, and the cost in factorisations.\n\n"
-               "| scene | triangles | from the same mesh | cost | from another mesh | cost | release | cost |\n"
-               "|---|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "Iterations / factorisations on the finest mesh, and the cost in factorisations.\n\n"
+        "| scene | triangles | from the same mesh | cost | from another mesh | cost | release | cost |\n"
+        "|---|---|---|---|---|---|---|---|\n");
     for (const std::string& scene : scenes) ruche::bench::study(scene, triangles);
 }
