@@ -72,7 +72,8 @@ struct Equilibrium {
 [[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options = {},
                                 const Control& control = {}, const Eigen::VectorXd* start = nullptr);
 
-/// The same from the shape on another mesh of the layout.
+/// The same from the shape on another mesh of the layout. Where only a start for a finer mesh is wanted
+/// (enough_rotation), tangles are left in it.
 [[nodiscard]] Equilibrium solve(const Model& model, const SolveOptions& options, const Control& control,
                                 const LayoutShape& start);
 

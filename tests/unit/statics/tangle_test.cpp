@@ -2,7 +2,9 @@
 
 #include <doctest/doctest.h>
 
+#include "energy/samples.hpp"
 #include "ruche/core/control.hpp"
+#include "ruche/statics/equilibrium.hpp"
 #include "ruche/statics/untangle.hpp"
 
 using namespace ruche;
@@ -119,4 +121,22 @@ TEST_CASE("retry: a start for a finer mesh need only be free of tangles") {
     Script script{.ends = {end(true, false), end(false, false)}, .last_good = good};
     CHECK_FALSE(script.play(true).health.tangled);
     CHECK(script.began_at.size() == 2);
+}
+
+TEST_CASE("retry: what is only a start for a finer mesh is not solved again, the finest mesh is") {
+    ModelInput sheet;
+    sheet.mesh = ruche::test::random_grid(6, 6, 0.2, 5);
+    sheet.print.assign(sheet.mesh.triangles.size(), Print{.front = 0.8});
+    sheet.prestretch = {1.4, 1.4};
+    const Model model(sheet);
+    Eigen::VectorXd crushed = Eigen::VectorXd::Zero(3 * model.vertex_count());
+    for (int v = 0; v < model.vertex_count(); ++v) crushed.segment<2>(3 * v) = 1e-3 * sheet.mesh.vertices[v];
+    SolveOptions options;
+    options.max_iterations = 0;
+    const LayoutShape start{sheet.mesh, sheet.print, crushed};
+    CHECK(solve(model, options, {}, start).message.find("a first attempt was tangled") != std::string::npos);
+    options.enough_rotation = 0.005;
+    const Equilibrium on_the_way = solve(model, options, {}, start);
+    CHECK(on_the_way.health.tangled);
+    CHECK(on_the_way.message.find("a first attempt") == std::string::npos);
 }
