@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,16 +37,17 @@ double processor_seconds_of(Work&& work) {
     return processor_seconds() - begin;
 }
 
-/// Median of five.
+/// Median of five; nan when the Hessian is not positive definite, which is no measure.
 double factorization_seconds(const Model& model, const Eigen::VectorXd& x) {
     AssembledSums sums;
     model.evaluate(x, Order::hessian, sums);
     RigidMotions(model).hold(model.pattern(), x, RigidMotions::Resisting::supports_and_loads, sums.hessian);
     SparseCholesky cholesky(model, vertex_elimination_order(model.pattern()));
     std::vector<double> seconds(5);
-    for (double& s : seconds) s = processor_seconds_of([&] { cholesky.factorize(sums.hessian); });
+    bool definite = true;
+    for (double& s : seconds) s = processor_seconds_of([&] { definite &= cholesky.factorize(sums.hessian); });
     std::nth_element(seconds.begin(), seconds.begin() + 2, seconds.end());
-    return seconds[2];
+    return definite ? seconds[2] : std::numeric_limits<double>::quiet_NaN();
 }
 
 struct MeshedScene {
