@@ -4,8 +4,8 @@
 usage: bench/release_study.py [FILE.json] [--scenes strips,torus] [--sizes 5000,20000,80000,200000] [--threads 1,2]
                               [--repeats 3] [--build build/release] [--again]
 
-Runs `ruche bench` three times for each row, keeps the run with the median of equivalent factorisations, and writes FILE.json (default build/release_study.json) and the same as Markdown
-tables beside it, after every row: when it is stopped, the next start goes on where it was; --again begins anew. Let
+Runs `ruche bench` three times for each row, keeps the run with the median of equivalent factorisations, and writes
+FILE.json (default build/release_study.json) and the same as Markdown tables beside it, after every row: when it is stopped, the next start goes on where it was; --again begins anew. Let
 nothing else run meanwhile. Needs a release build with benchmarks (tools/bench makes one).
 
 Growth is the exponent p of processor time ~ triangles^p from the mesh nearest to 20,000 triangles to the largest one.
