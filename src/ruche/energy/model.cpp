@@ -273,13 +273,19 @@ Eigen::VectorXd Model::initial() const {
     return x;
 }
 
-EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
+EnergyTerms Model::evaluate_fabric(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(size());
     if (wants_hessian(order)) sums.hessian.assign(parts_->pattern->row_index().size(), 0.0);
     EnergyTerms terms;
     terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
     terms.fabric_bending = parts_->bending->add(unknowns, order, sums);
+    return terms;
+}
+
+EnergyTerms Model::evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
+    const Unknowns unknowns = parts_->unknowns(x);
+    EnergyTerms terms = evaluate_fabric(x, order, sums);
     terms.plastic = parts_->laminate->add(unknowns, order, sums);
     terms.plastic += parts_->rod_edges->add(unknowns, order, sums);
     terms.plastic += parts_->rod_joints->add(unknowns, order, sums);

@@ -148,6 +148,9 @@ class Model {
     /// `order` asks. Non-finite when a bare element is inverted. `sums` is resized when needed, so keep it
     /// between calls.
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
+    /// The same without plastic, loads and contact: energy of the bare fabric alone, which is all that a
+    /// vertex feels that no printed triangle has.
+    EnergyTerms evaluate_fabric(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
 
     /// Some unknowns that may move while all others stay.
     class Patch {

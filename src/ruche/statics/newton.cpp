@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ruche/core/memory.hpp"
+#include "ruche/statics/fabric_relaxation.hpp"
 #include "ruche/statics/iterate.hpp"
 #include "ruche/statics/starts.hpp"
 #include "ruche/statics/tangle.hpp"
@@ -26,6 +27,7 @@ Newton::Newton(const Model& model, const SolveOptions& options, const Control& c
       options_(options),
       control_(control),
       held_(held_unknowns(model)),
+      vertex_order_(vertex_order),
       retraction_(model, vertex_order),
       system_(model, held_, vertex_order),
       elimination_(model, held_) {
@@ -215,6 +217,7 @@ Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     // Where the old mesh was too coarse, at corners of strips, small elements come out crushed or folded
     // over.
     relax_while(x, 0.01);
+    FabricRelaxation(model(), held_, vertex_order_)(model(), x);
     return x;
 }
 

@@ -76,6 +76,7 @@ class Newton {
     SolveOptions options_;
     const Control& control_;
     std::vector<char> held_;  // per unknown: by a support
+    std::vector<int> vertex_order_;  // of elimination
     Retraction retraction_;
     NewtonSystem system_;
     NonlinearElimination elimination_;

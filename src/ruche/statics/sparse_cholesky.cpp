@@ -77,6 +77,12 @@ SparseCholesky::SparseCholesky(const Model& model, std::span<const int> vertex_o
     prepare_blas();
 }
 
+SparseCholesky::SparseCholesky(const NodeGraph& graph, const SymmetricPattern& pattern,
+                               std::vector<int> node_order)
+    : factor_(analyse(graph, std::move(node_order)), pattern) {
+    prepare_blas();
+}
+
 std::string blas_kernels() { return openblas_get_corename(); }
 
 std::vector<int> nested_dissection(std::span<const int> start, std::span<const int> neighbours) {

@@ -20,6 +20,10 @@ class SparseCholesky {
     /// the first of its four vertices, where it causes no fill of its own. Throws std::bad_alloc.
     SparseCholesky(const Model& model, std::span<const int> vertex_order);
 
+    /// For a matrix of blocks: their graph, its pattern by unknowns, and the node that is eliminated k-th.
+    /// Throws std::bad_alloc.
+    SparseCholesky(const NodeGraph& graph, const SymmetricPattern& pattern, std::vector<int> node_order);
+
     /// False when the matrix is not positive definite (or not finite). Throws std::bad_alloc.
     [[nodiscard]] bool factorize(std::span<const double> values) { return factor_.factorize(values); }
 
