@@ -100,7 +100,8 @@ void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
         Eigen::VectorXd candidate = x;
         bool lower = false;
         for (double t = 1.0; t > shortest && !lower; t *= 0.5) {
-            for (Eigen::Index i = 0; i < count; ++i) candidate[unknowns_[i]] = x[unknowns_[i]] + t * direction[i];
+            for (Eigen::Index i = 0; i < count; ++i)
+                candidate[unknowns_[i]] = x[unknowns_[i]] + t * direction[i];
             const double trial = model.evaluate_fabric(candidate, Order::value, none).total();
             lower = std::isfinite(trial) && trial <= energy + 1e-4 * t * slope;
             whole = lower && t == 1.0;

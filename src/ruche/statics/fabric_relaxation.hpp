@@ -10,10 +10,11 @@
 
 namespace ruche {
 
-/// Brings the bare fabric between strips to its own equilibrium while the plastic stays where it is. Fabric is
-/// soft and its law far from linear: carried over from a coarser mesh it pulls in wrong directions, and a
-/// Newton step of the whole sheet moves the strips after it, along ways on which the sheet hardly resists. The
-/// fabric alone falls into small pieces between strips and costs a small part of a factorisation of the sheet.
+/// Brings the bare fabric between strips to its own equilibrium while the plastic stays where it is. Fabric
+/// is soft and its law far from linear: carried over from a coarser mesh it pulls in wrong directions, and a
+/// Newton step of the whole sheet moves the strips after it, along ways on which the sheet hardly resists.
+/// The fabric alone falls into small pieces between strips and costs a small part of a factorisation of the
+/// sheet.
 class FabricRelaxation {
   public:
     /// `held`: one flag per unknown that does not move anyway; `vertex_order`: an elimination order of all
@@ -27,8 +28,8 @@ class FabricRelaxation {
   private:
     bool factorize(const Model& model, const Eigen::VectorXd& x);
 
-    std::vector<int> unknowns_;       // of the model
-    std::vector<int> value_;          // where each of the matrix's values stands in the model's Hessian
+    std::vector<int> unknowns_;  // of the model
+    std::vector<int> value_;     // where each of the matrix's values stands in the model's Hessian
     std::optional<SparseCholesky> cholesky_;  // none without such fabric, or without plastic
     AssembledSums sums_;
     AssembledSums gauss_newton_;

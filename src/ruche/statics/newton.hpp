@@ -75,7 +75,7 @@ class Newton {
     std::optional<ContactGuard> contact_;
     SolveOptions options_;
     const Control& control_;
-    std::vector<char> held_;  // per unknown: by a support
+    std::vector<char> held_;         // per unknown: by a support
     std::vector<int> vertex_order_;  // of elimination
     Retraction retraction_;
     NewtonSystem system_;
