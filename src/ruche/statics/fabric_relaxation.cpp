@@ -69,17 +69,15 @@ FabricRelaxation::FabricRelaxation(const Model& model, std::span<const char> hel
     matrix_.resize(value_.size());
 }
 
-/// The exact Hessian in `sums_`, with as much of the Gauss-Newton form as makes it positive definite.
+/// The exact Hessian, which is in `sums_`, or where that is not positive definite the Gauss-Newton form.
 bool FabricRelaxation::factorize(const Model& model, const Eigen::VectorXd& x) {
-    for (const double share : {0.0, 0.1, 0.3, 1.0}) {
-        if (share == 0.1) model.evaluate_fabric(x, Order::gauss_newton, gauss_newton_);
-        for (std::size_t i = 0; i < value_.size(); ++i) {
-            matrix_[i] = sums_.hessian[value_[i]];
-            if (share > 0.0) matrix_[i] += share * (gauss_newton_.hessian[value_[i]] - matrix_[i]);
-        }
-        if (cholesky_->factorize(matrix_)) return true;
-    }
-    return false;
+    const auto factorize_part_of = [this](const AssembledSums& whole) {
+        for (std::size_t i = 0; i < value_.size(); ++i) matrix_[i] = whole.hessian[value_[i]];
+        return cholesky_->factorize(matrix_);
+    };
+    if (factorize_part_of(sums_)) return true;
+    model.evaluate_fabric(x, Order::gauss_newton, gauss_newton_);
+    return factorize_part_of(gauss_newton_);
 }
 
 void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
