@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 namespace ruche {
 namespace {
@@ -123,6 +124,17 @@ LaminateTerm::Kinematics LaminateTerm::kinematics(const Prepared& e, const Unkno
 
 double LaminateTerm::max_normal_rotation(int element, const Unknowns& x) const {
     return kinematics(elements_[element], x).phi.cwiseAbs().maxCoeff();
+}
+
+void LaminateTerm::unwind(Eigen::VectorXd& x, int vertex_count) const {
+    constexpr double turn = 2.0 * std::numbers::pi;
+    for (const Prepared& e : elements_) {
+        for (int i = 0; i < 3; ++i) {
+            if (e.nodes[3 + i] < 0 || e.nodes[6 + i] < 0) continue;
+            double& y = x[e.nodes[6 + i] + 2 * vertex_count];
+            y -= std::round(y * e.y_to_xi[i] / turn) * turn / e.y_to_xi[i];
+        }
+    }
 }
 
 std::array<Vec3, FabricPly::points> LaminateTerm::fabric_strains(int element, const Unknowns& x) const {

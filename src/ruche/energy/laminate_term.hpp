@@ -59,6 +59,8 @@ class LaminateTerm {
 
     /// max over the edges of |theta/2 +- xi|, which must stay below pi/2.
     double max_normal_rotation(int element, const Unknowns& x) const;
+    /// Takes whole turns out of the rotations xi in x.
+    void unwind(Eigen::VectorXd& x, int vertex_count) const;
 
     /// Whether the fabric plies have the fabric's own law, and their strains then.
     bool has_fabric_law() const { return !fabric_.empty(); }

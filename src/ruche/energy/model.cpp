@@ -273,6 +273,8 @@ Eigen::VectorXd Model::initial() const {
     return x;
 }
 
+void Model::unwind(Eigen::VectorXd& x) const { parts_->laminate->term().unwind(x, vertex_count()); }
+
 EnergyTerms Model::evaluate_fabric(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(size());

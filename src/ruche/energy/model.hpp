@@ -144,6 +144,10 @@ class Model {
     /// Flat as printed, without noise; edge unknowns zero.
     Eigen::VectorXd initial() const;
 
+    /// Takes whole turns of normals about edges of printed triangles out of the edge unknowns, which leaves
+    /// the shape and its energy as they are. (Steps may wind them up where an edge's normal hardly matters.)
+    void unwind(Eigen::VectorXd& x) const;
+
     /// Energy, and in `sums` the gradient (N) and the Hessian's values on `pattern()` (N/mm) as far as
     /// `order` asks. Non-finite when a bare element is inverted. `sums` is resized when needed, so keep it
     /// between calls.

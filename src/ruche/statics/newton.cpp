@@ -308,6 +308,7 @@ void Newton::iterate(Equilibrium& result) {
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
         if (rotation_ < settled) narrow_extension();
+        model().unwind(x_);
         evaluate(order);
         if (residual() <= tolerance && narrow_extension()) evaluate(order);
         report();

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 #include "energy/battery.hpp"
 #include "energy/samples.hpp"
@@ -129,6 +130,33 @@ TEST_CASE("model: a positive edge unknown bends the edge's first triangle more a
     CHECK((more[0] - before[0]) * (less[0] - before[0]) < 0.0);
     // The same by symmetry with the two triangles exchanged.
     CHECK(more[0] == doctest::Approx(less[1]).epsilon(1e-12));
+}
+
+TEST_CASE("model: whole turns of normals about edges change no energy and are taken out") {
+    const Model model(patchwork());
+    const Eigen::VectorXd x = rolled(model, {});
+    const TriangleMesh& mesh = model.input().mesh;
+    const int positions = 3 * model.vertex_count();
+    Eigen::VectorXd wound = x;
+    int turns = 1;
+    for (const Edge& edge : model.edges().edges) {
+        const auto printed = [&](int side) { return !model.input().print[edge.triangle[side]].bare(); };
+        if (edge.on_boundary() || !printed(0) || !printed(1)) continue;
+        const double length = (mesh.vertices[edge.vertex[1]] - mesh.vertices[edge.vertex[0]]).norm();
+        const double area = layout_area(mesh, edge.triangle[0]) + layout_area(mesh, edge.triangle[1]);
+        wound[positions + turns - 1] +=
+            (turns % 2 == 0 ? -1.0 : 1.0) * turns * 2.0 * std::numbers::pi * area / length;
+        ++turns;
+    }
+    REQUIRE(turns - 1 == model.size() - positions);
+    REQUIRE(turns > 3);
+    CHECK(model.energy(wound) == doctest::Approx(model.energy(x)).epsilon(1e-12));
+    CHECK(model.health(wound).max_edge_rotation_deg > 180.0);
+    model.unwind(wound);
+    CHECK((wound - x).cwiseAbs().maxCoeff() < 1e-12);
+    Eigen::VectorXd same = x;
+    model.unwind(same);
+    CHECK(same == x);
 }
 
 TEST_CASE("model: averaged edge normals and bare fabric have no edge unknowns") {
