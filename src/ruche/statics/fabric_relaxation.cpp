@@ -8,10 +8,12 @@ namespace {
 /// Vertices that only bare triangles have and nothing holds.
 std::vector<char> bare_vertices(const Model& model, std::span<const char> held) {
     const ModelInput& input = model.input();
-    std::vector<char> bare(model.vertex_count(), 1);
-    for (int t = 0; t < input.mesh.triangle_count(); ++t) {
-        if (input.print[t].bare()) continue;
-        for (const int v : input.mesh.triangles[t]) bare[v] = 0;
+    std::vector<char> bare(model.vertex_count(), 0);
+    for (const bool printed : {false, true}) {
+        for (int t = 0; t < input.mesh.triangle_count(); ++t) {
+            if (input.print[t].bare() == printed) continue;
+            for (const int v : input.mesh.triangles[t]) bare[v] = printed ? 0 : 1;
+        }
     }
     for (const Rod& rod : input.rods) {
         for (const int v : rod.vertices) bare[v] = 0;
