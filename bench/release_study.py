@@ -5,8 +5,9 @@ usage: bench/release_study.py [FILE.json] [--scenes strips,torus] [--sizes 5000,
                               [--repeats 3] [--build build/release] [--again]
 
 Runs `ruche bench` three times for each row, keeps the run with the median of equivalent factorisations, and writes
-FILE.json (default build/release_study.json) and the same as Markdown tables beside it, after every row: when it is stopped, the next start goes on where it was; --again begins anew. Let
-nothing else run meanwhile. Needs a release build with benchmarks (tools/bench makes one).
+FILE.json (default build/release_study.json) and the same as Markdown tables beside it, after every row: when it is
+stopped, the next start goes on where it was; --again begins anew. Let nothing else run meanwhile. Needs a release build
+with benchmarks (tools/bench makes one).
 
 Growth is the exponent p of processor time ~ triangles^p from the mesh nearest to 20,000 triangles to the largest one.
 The program ends with 1 when a release did not end converged and stable, or the element is less than 40 times as fast
