@@ -221,7 +221,6 @@ Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
         FabricRelaxation(model(), held_, vertex_order_)(model(), x);
     } catch (const std::bad_alloc&) {
         // It is not needed, and `run` says so when there is not enough memory for what is.
-        return x;
     }
     return x;
 }

@@ -67,9 +67,7 @@ SupernodalStructure structure_of(const Model& model, std::span<const int> vertex
 }  // namespace
 
 SparseCholesky::SparseCholesky(const SymmetricPattern& pattern, std::vector<int> elimination_order)
-    : factor_(analyse({pattern, std::vector<int>(pattern.size, 1)}, std::move(elimination_order)), pattern) {
-    prepare_blas();
-}
+    : SparseCholesky({pattern, std::vector<int>(pattern.size, 1)}, pattern, std::move(elimination_order)) {}
 
 SparseCholesky::SparseCholesky(const Model& model, std::span<const int> vertex_order)
     : factor_(structure_of(model, vertex_order),

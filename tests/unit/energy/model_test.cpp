@@ -138,18 +138,18 @@ TEST_CASE("model: whole turns of normals about edges change no energy and are ta
     const TriangleMesh& mesh = model.input().mesh;
     const int positions = 3 * model.vertex_count();
     Eigen::VectorXd wound = x;
-    int turns = 1;
+    int edges = 0;
     for (const Edge& edge : model.edges().edges) {
         const auto printed = [&](int side) { return !model.input().print[edge.triangle[side]].bare(); };
         if (edge.on_boundary() || !printed(0) || !printed(1)) continue;
         const double length = (mesh.vertices[edge.vertex[1]] - mesh.vertices[edge.vertex[0]]).norm();
         const double area = layout_area(mesh, edge.triangle[0]) + layout_area(mesh, edge.triangle[1]);
-        wound[positions + turns - 1] +=
-            (turns % 2 == 0 ? -1.0 : 1.0) * turns * 2.0 * std::numbers::pi * area / length;
-        ++turns;
+        const double turns = edges % 2 == 0 ? edges + 1 : -(edges + 1);
+        wound[positions + edges] += turns * 2.0 * std::numbers::pi * area / length;
+        ++edges;
     }
-    REQUIRE(turns - 1 == model.size() - positions);
-    REQUIRE(turns > 3);
+    REQUIRE(edges == model.size() - positions);
+    REQUIRE(edges > 2);
     CHECK(model.energy(wound) == doctest::Approx(model.energy(x)).epsilon(1e-12));
     CHECK(model.health(wound).max_edge_rotation_deg > 180.0);
     model.unwind(wound);

@@ -117,6 +117,21 @@ TEST_CASE("fabric relaxation: what is held stays") {
     CHECK(x != sheet.x);
 }
 
+TEST_CASE("fabric relaxation: a vertex that no triangle has does not get in the way") {
+    const Sagging sheet(two_strips());
+    ModelInput input = two_strips();
+    input.mesh.vertices.emplace_back(50.0, 50.0);
+    const Model model(input);
+    const Eigen::Index positions = 3 * sheet.model.vertex_count();
+    Eigen::VectorXd start(sheet.x.size() + 3);
+    start << sheet.x.head(positions), 50.0, 50.0, 0.0, sheet.x.tail(sheet.x.size() - positions);
+    Eigen::VectorXd x = start;
+    FabricRelaxation(model, std::vector<char>(model.size(), 0), vertex_elimination_order(model.pattern()))(
+        model, x);
+    CHECK(model.energy(x) < model.energy(start));
+    CHECK(x.segment<3>(positions) == start.segment<3>(positions));
+}
+
 TEST_CASE("fabric relaxation: without strips, without fabric and from an impossible shape nothing moves") {
     for (const double thickness : {0.0, 0.8}) {
         ModelInput input = two_strips();
