@@ -290,7 +290,7 @@ def test_slow_clients_keep_nobody_waiting(studio):
 
 
 def test_answers_come_while_ten_listen_and_a_release_runs(studio):
-    release = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.4, "output.picture": False}}
+    release = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.15, "output.picture": False}}
     _, answer = studio.post("/api/release", release)
     listeners = [socket.create_connection(("127.0.0.1", studio.port)) for _ in range(10)]
     for listener in listeners:
@@ -319,7 +319,7 @@ def test_a_stopped_server_keeps_what_is_done_and_how_far_the_rest_got(studio):
     _, first = studio.post("/api/release", SCENE)
     studio.finished(first["id"])
     finished = (studio.folder / "d.out/report.json").read_bytes()
-    radial = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.4, "output.picture": False}}
+    radial = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.15, "output.picture": False}}
     _, second = studio.post("/api/release", radial)
     studio.moving(second["id"])
     assert studio.close() == 0
@@ -330,7 +330,7 @@ def test_a_stopped_server_keeps_what_is_done_and_how_far_the_rest_got(studio):
 def test_a_killed_server_leaves_no_half_result(studio):
     _, first = studio.post("/api/release", SCENE)
     studio.finished(first["id"])
-    studio.post("/api/release", SCENE | {"values": {"mesh.size_mm": 0.3}})
+    studio.post("/api/release", SCENE | {"values": {"mesh.size_mm": 0.15}})
     time.sleep(0.7)
     studio.process.kill()
     studio.process.wait()

@@ -21,7 +21,7 @@ Equilibrium after(const Equilibrium& first, Equilibrium next) {
 
 SolveOptions as_a_start(const Scene& scene) {
     SolveOptions options = scene.solver;
-    options.enough_rotation = 0.03;
+    options.enough_rotation = 0.02;
     options.max_iterations = 60;
     return options;
 }
