@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ruche/core/memory.hpp"
+#include "ruche/statics/bending_places.hpp"
 #include "ruche/statics/fabric_relaxation.hpp"
 #include "ruche/statics/iterate.hpp"
 #include "ruche/statics/starts.hpp"
@@ -19,17 +20,23 @@ namespace ruche {
 static double largest(const AssembledSums& sums) { return sums.gradient.cwiseAbs().maxCoeff(); }
 
 Newton::Newton(const Model& model, const SolveOptions& options, const Control& control)
-    : Newton(model, options, control, vertex_elimination_order(model.pattern())) {}
+    : Newton(model, held_unknowns(model), is_loaded(model.input()), options, control,
+             vertex_elimination_order(model.pattern())) {}
 
-Newton::Newton(const Model& model, const SolveOptions& options, const Control& control,
-               const std::vector<int>& vertex_order)
+Newton::Newton(const SheetPiece& piece, bool loaded, const SolveOptions& options, const Control& control)
+    : Newton(piece.model, piece.held, loaded, options, control,
+             vertex_elimination_order(piece.model.pattern())) {}
+
+Newton::Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
+               const Control& control, const std::vector<int>& vertex_order)
     : original_(&model),
       options_(options),
       control_(control),
-      held_(held_unknowns(model)),
+      held_(std::move(held)),
+      loaded_(loaded),
       vertex_order_(vertex_order),
       retraction_(model, vertex_order),
-      system_(model, held_, vertex_order),
+      system_(model, held_, loaded, vertex_order),
       elimination_(model, held_) {
     if (model.input().options.contact) {
         own_.emplace(model.input());
@@ -141,6 +148,27 @@ void Newton::relax_spots() {
         }
         cover_contacts(x_);
     }
+}
+
+/// Where the last step bent the sheet in a few places only, those come to rest on their own, all else held.
+void Newton::settle_places() {
+    if (wary_ || contact_ || !model().input().rods.empty()) return;
+    for (const std::vector<int>& place : places_) {
+        const SheetPiece piece = cut_out(model(), place, x_);
+        piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x_)), x_);
+    }
+}
+
+Eigen::VectorXd Newton::settle(const Eigen::VectorXd& start) {
+    constexpr int most_steps = 10;
+    constexpr double settled = 1e-3;  // rad
+    x_ = start;
+    for (rotation_ = turning; rotation_ > settled && iterations_ < most_steps; ++iterations_) {
+        evaluate(Order::hessian);
+        if (residual() <= options_.residual_tolerance_n || !step(Order::hessian)) break;
+        relax_spots();
+    }
+    return x_;
 }
 
 /// At a stationary point whose exact Hessian is indefinite: moves to lower energy along the direction of most
@@ -288,14 +316,15 @@ bool Newton::step(Order order) {
     const bool solved =
         exact ? system_.exact_step(here(), rotation_, step_) : system_.gauss_newton_step(here(), step_);
     if (!solved) return false;
-    rotation_ = retraction_.rms_rotation(x_, step_);
+    const std::vector<Vec3> spins = retraction_.spins(x_, step_);
+    rotation_ = retraction_.rms_rotation(spins);
+    places_ = bending_places(model(), held_, spins);
     const bool moved = line_search();
     if (exact) system_.adapt(halved_);
     return moved;
 }
 
 void Newton::iterate(Equilibrium& result) {
-    const bool loaded = !model().input().supports.empty() || !model().input().forces.empty();
     const int first_iteration = iterations_;
     const double tolerance = options_.residual_tolerance_n;
     int escapes = 0;
@@ -303,7 +332,7 @@ void Newton::iterate(Equilibrium& result) {
     cover_contacts(x_);
     const bool impossible = contact_ && passes_through_itself(model(), x_);
     for (;;) {
-        const bool exact = loaded || rotation_ <= turning;
+        const bool exact = loaded_ || rotation_ <= turning;
         const Order order = exact ? Order::hessian : Order::gauss_newton;
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
         if (rotation_ < settled) narrow_extension();
@@ -353,7 +382,10 @@ void Newton::iterate(Equilibrium& result) {
             evaluate(Order::hessian);
             stalled = !step(Order::hessian);
         }
-        if (!stalled) relax_spots();
+        if (!stalled) {
+            relax_spots();
+            settle_places();
+        }
     }
 }
 

@@ -11,6 +11,7 @@
 #include "ruche/statics/newton_system.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
+#include "ruche/statics/sheet_piece.hpp"
 
 namespace ruche {
 
@@ -30,6 +31,12 @@ class Newton {
     /// From a state to where it leads. A stop, limits of time and memory, and failures stand in the result.
     Equilibrium run(const Eigen::VectorXd& start);
 
+    /// For a piece of a sheet: its rim may hold it as firmly as it likes, it is no load.
+    Newton(const SheetPiece& piece, bool loaded, const SolveOptions& options, const Control& control);
+
+    /// Brings a piece nearer to equilibrium, from its state: some steps, until one hardly turns it any more.
+    Eigen::VectorXd settle(const Eigen::VectorXd& start);
+
     /// The start that a shape on another mesh of the layout makes.
     Eigen::VectorXd carried_over(const LayoutShape& start);
 
@@ -45,8 +52,8 @@ class Newton {
     static constexpr double turning = 0.05;
     static constexpr double wary_turn = 0.3;  // rad, rms: how far a wary step may turn the sheet
 
-    Newton(const Model& model, const SolveOptions& options, const Control& control,
-           const std::vector<int>& vertex_order);
+    Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
+           const Control& control, const std::vector<int>& vertex_order);
     const Model& model() const { return own_ ? *own_ : *original_; }
     NewtonPoint here() const { return {model(), x_, sums_}; }
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
@@ -65,6 +72,7 @@ class Newton {
     void cover_contacts(const Eigen::VectorXd& x);
     bool line_search();
     void relax_spots();
+    void settle_places();
     void relax_while(Eigen::VectorXd& x, double worth);
     bool leave_saddle();
     std::string missing_memory() const;
@@ -75,7 +83,8 @@ class Newton {
     std::optional<ContactGuard> contact_;
     SolveOptions options_;
     const Control& control_;
-    std::vector<char> held_;         // per unknown: by a support
+    std::vector<char> held_;         // per unknown: it does not move
+    bool loaded_;                    // supports or forces hold the sheet
     std::vector<int> vertex_order_;  // of elimination
     Retraction retraction_;
     NewtonSystem system_;
@@ -86,8 +95,9 @@ class Newton {
     AssembledSums sums_;
     AssembledSums trial_;
     EnergyTerms terms_;
-    bool halved_ = false;         // the last line search had to
-    double rotation_ = infinity;  // rms of the last step
+    bool halved_ = false;                   // the last line search had to
+    std::vector<std::vector<int>> places_;  // where the last step bent the sheet, if that was in few places
+    double rotation_ = infinity;            // rms of the last step
     int iterations_ = 0;
     std::vector<double> residuals_;  // of all runs
     bool wary_ = false;

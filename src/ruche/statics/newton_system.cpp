@@ -15,9 +15,9 @@ constexpr double share_falls = 8.0;  // 16 makes stars slower, 4 strips
 
 }  // namespace
 
-NewtonSystem::NewtonSystem(const Model& model, const std::vector<char>& held,
+NewtonSystem::NewtonSystem(const Model& model, const std::vector<char>& held, bool loaded,
                            const std::vector<int>& vertex_order)
-    : held_(held), rigid_(model), cholesky_(model, vertex_order) {}
+    : held_(held), loaded_(loaded), rigid_(model), cholesky_(model, vertex_order) {}
 
 void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift) {
     const NodePattern& pattern = at.model.pattern();
@@ -116,7 +116,7 @@ bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::Vec
     constexpr double near = 0.003;  // rad: later steps are solved in a few iterations, earlier ones seldom
     if (factor_is_near_ && rotation < near && solve_with_last_factor(at, step)) return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
-    if (loaded(at.model)) {
+    if (loaded_) {
         bool ready = factorize(at, Order::hessian);
         // The last one may have been far more than the soft directions need, which then hardly move: where
         // some parts are much stiffer than others the mean says nothing about those.
@@ -157,6 +157,8 @@ std::vector<char> held_unknowns(const Model& model) {
     }
     return held;
 }
+
+bool is_loaded(const ModelInput& sheet) { return !sheet.supports.empty() || !sheet.forces.empty(); }
 
 double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian) {
     double sum = 0.0;

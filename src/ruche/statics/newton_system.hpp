@@ -20,9 +20,10 @@ struct NewtonPoint {
 /// again only when contacts change it.
 class NewtonSystem {
   public:
-    /// `held`: one flag per unknown that a support holds; it has to stay. `vertex_order`: see
-    /// sparse_cholesky.hpp.
-    NewtonSystem(const Model& model, const std::vector<char>& held, const std::vector<int>& vertex_order);
+    /// `held`: one flag per unknown that does not move; it has to stay. `loaded`: supports or forces hold the
+    /// sheet. `vertex_order`: see sparse_cholesky.hpp.
+    NewtonSystem(const Model& model, const std::vector<char>& held, bool loaded,
+                 const std::vector<int>& vertex_order);
 
     /// Newton's step with the exact Hessian, which `at.sums` holds. While the sheet hardly turns (`rotation`,
     /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick. Where the
@@ -62,9 +63,6 @@ class NewtonSystem {
     double factor_megabytes() const { return cholesky_.factor_megabytes(); }
 
   private:
-    bool loaded(const Model& model) const {
-        return !model.input().supports.empty() || !model.input().forces.empty();
-    }
     void build_matrix(const NewtonPoint& at, Order order, double shift);
     bool factorize(const NewtonPoint& at, Order order, double shift = 0.0);
     bool factorize_mean(const NewtonPoint& at);
@@ -72,6 +70,7 @@ class NewtonSystem {
     bool finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step);
 
     const std::vector<char>& held_;
+    bool loaded_;
     RigidMotions rigid_;
     SparseCholesky cholesky_;
     std::vector<double> matrix_;
@@ -87,6 +86,9 @@ class NewtonSystem {
 
 /// One flag per unknown: a support holds it.
 std::vector<char> held_unknowns(const Model& model);
+
+/// Whether supports or forces hold the sheet.
+bool is_loaded(const ModelInput& sheet);
 
 /// Mean magnitude of the diagonal of a Hessian, N/mm.
 double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hessian);

@@ -248,14 +248,19 @@ Eigen::VectorXd Retraction::with_edges(const Eigen::VectorXd& x, const std::vect
     return result;
 }
 
-double Retraction::rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const {
-    std::vector<double> turned(elements_.size());
+std::vector<Vec3> Retraction::spins(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const {
+    std::vector<Vec3> result(elements_.size());
     for_each_element([&](std::size_t i) {
-        const Element& e = elements_[i];
-        turned[i] =
-            e.area * element_step(edges_of(x, e.vertices), edges_of(step, e.vertices)).spin.squaredNorm();
+        const Triangle& v = elements_[i].vertices;
+        result[i] = element_step(edges_of(x, v), edges_of(step, v)).spin;
     });
-    return std::sqrt(std::accumulate(turned.begin(), turned.end(), 0.0) / total_area_);
+    return result;
+}
+
+double Retraction::rms_rotation(const std::vector<Vec3>& spins) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < elements_.size(); ++i) sum += elements_[i].area * spins[i].squaredNorm();
+    return std::sqrt(sum / total_area_);
 }
 
 Eigen::VectorXd Retraction::meet_supports(const Eigen::VectorXd& x) {

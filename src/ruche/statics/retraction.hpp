@@ -30,8 +30,13 @@ class Retraction {
     Eigen::VectorXd with_edges(const Eigen::VectorXd& x,
                                const std::vector<Eigen::Matrix<double, 3, 2>>& edges);
 
-    /// Area-weighted root mean square, over elements, of the angle by which a step turns them, rad.
-    double rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const;
+    /// About which axis and by which angle a step turns each element, rad.
+    std::vector<Vec3> spins(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const;
+    /// Area-weighted root mean square, over elements, of these angles, rad.
+    double rms_rotation(const std::vector<Vec3>& spins) const;
+    double rms_rotation(const Eigen::VectorXd& x, const Eigen::VectorXd& step) const {
+        return rms_rotation(spins(x, step));
+    }
 
     /// Moves the supported vertices to where they are held and the rest along with them (harmonically).
     Eigen::VectorXd meet_supports(const Eigen::VectorXd& x);

@@ -5,7 +5,8 @@
 namespace ruche {
 
 ShapeResponse::ShapeResponse(const Model& model, const Eigen::VectorXd& x)
-    : held_(held_unknowns(model)), system_(model, held_, vertex_elimination_order(model.pattern())) {
+    : held_(held_unknowns(model)),
+      system_(model, held_, is_loaded(model.input()), vertex_elimination_order(model.pattern())) {
     AssembledSums sums;
     model.evaluate(x, Order::hessian, sums);
     stable_ = system_.certify({model, x, sums});
