@@ -60,7 +60,7 @@ class Trial {
           held_(model.size(), 0),
           order_(vertex_elimination_order(model.pattern())),
           retraction_(model, order_),
-          system_(model, held_, order_),
+          system_(model, held_, false, order_),
           elimination_(model, held_) {
         for (const Edge& edge : model.edges().edges) {
             const auto& layout = model.input().mesh.vertices;
