@@ -90,8 +90,8 @@ class Trial {
     bool find_step(bool exact) {
         const NewtonPoint here{model_, x_, sums_};
         if (!exact) return system_.gauss_newton_step(here, step_);
-        if (variant_.mean_where_indefinite) return system_.exact_step(here, rotation_, step_);
-        if (system_.certify(here)) return system_.exact_step(here, 0.0, step_);
+        if (variant_.mean_where_indefinite) return system_.exact_step(here, rotation_, tolerance, step_);
+        if (system_.certify(here)) return system_.exact_step(here, 0.0, tolerance, step_);
         AssembledSums form;
         model_.evaluate(x_, Order::gauss_newton, form);
         return system_.gauss_newton_step({model_, x_, form}, step_);

@@ -52,7 +52,7 @@ std::vector<BentEdge> most_bent(const MeshEdges& mesh, std::span<const Vec3> spi
 std::vector<std::vector<int>> bending_places(const Model& model, std::span<const char> held,
                                              std::span<const Vec3> spins) {
     constexpr int rings = 4;
-    constexpr double most = 0.15;  // of the vertices: more is no matter of places
+    constexpr double most = 0.4;  // of the vertices: more is no matter of places
     const TriangleMesh& mesh = model.input().mesh;
     std::vector<char> inside(mesh.vertices.size(), 0);
     for (const BentEdge& bent : most_bent(model.edges(), spins)) {

@@ -313,8 +313,8 @@ bool Newton::must_stop(Equilibrium& result, int first_iteration) const {
 /// One step: solve, line search. False when no step lowers energy or residual.
 bool Newton::step(Order order) {
     const bool exact = order == Order::hessian;
-    const bool solved =
-        exact ? system_.exact_step(here(), rotation_, step_) : system_.gauss_newton_step(here(), step_);
+    const bool solved = exact ? system_.exact_step(here(), rotation_, options_.residual_tolerance_n, step_)
+                              : system_.gauss_newton_step(here(), step_);
     if (!solved) return false;
     const std::vector<Vec3> spins = retraction_.spins(x_, step_);
     rotation_ = retraction_.rms_rotation(spins);

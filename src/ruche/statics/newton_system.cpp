@@ -74,19 +74,20 @@ void NewtonSystem::adapt(bool halved) {
     after_gauss_newton_ = false;
 }
 
-/// The exact step to a part in a thousand. False when that would take long or the Hessian is not positive
-/// definite.
-bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd& step) {
+/// The exact step to a part in a thousand, or to what `tolerance` asks for. False when that would take long
+/// or the Hessian is not positive definite.
+bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step) {
     constexpr double accuracy = 1e-3;  // of the residual
     constexpr int most_steps = 6;      // a solve costs about a tenth of a factorisation
-    constexpr double hopeful = 0.3;    // by which each step has to lower the residual
+    constexpr double hopeful = 0.5;    // by which each step has to lower the residual
     build_matrix(at, Order::hessian, 0.0);
     const NodePattern& pattern = at.model.pattern();
     const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
         at.model.size(), at.model.size(), static_cast<Eigen::Index>(matrix_.size()),
         pattern.column_start().data(), pattern.row_index().data(), matrix_.data());
     Eigen::VectorXd rest = -at.sums.gradient;
-    const double enough = accuracy * rest.norm();
+    const double first = rest.norm();
+    const double enough = std::max(accuracy * first, 0.3 * tolerance);
     Eigen::VectorXd direction = cholesky_.solve(rest);
     double product = rest.dot(direction);
     step.setZero(at.model.size());
@@ -98,7 +99,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd
         rest -= (product / curvature) * pull;
         const double left = rest.norm();
         if (left < enough) return true;
-        if (left > std::pow(hopeful, i + 1) * enough / accuracy) return false;
+        if (left > std::pow(hopeful, i + 1) * first) return false;
         const Eigen::VectorXd next = cholesky_.solve(rest);
         const double next_product = rest.dot(next);
         direction = next + (next_product / product) * direction;
@@ -112,9 +113,10 @@ bool NewtonSystem::finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& st
     return ready && step.allFinite();
 }
 
-bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, Eigen::VectorXd& step) {
+bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tolerance,
+                              Eigen::VectorXd& step) {
     constexpr double near = 0.003;  // rad: later steps are solved in a few iterations, earlier ones seldom
-    if (factor_is_near_ && rotation < near && solve_with_last_factor(at, step)) return true;
+    if (factor_is_near_ && rotation < near && solve_with_last_factor(at, tolerance, step)) return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
         bool ready = factorize(at, Order::hessian);

@@ -26,18 +26,19 @@ class NewtonSystem {
                  const std::vector<int>& vertex_order);
 
     /// Newton's step with the exact Hessian, which `at.sums` holds. While the sheet hardly turns (`rotation`,
-    /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick. Where the
-    /// Hessian is not positive definite, fabric is about to buckle: then with a mean of it and the
-    /// Gauss-Newton form; the latter's share is kept from step to step. On its own that form knows nothing of
-    /// the compression that makes fabric buckle, and a barely definite matrix runs far along the buckling
-    /// shapes.
+    /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick, and no further
+    /// than a residual of `tolerance` (N) asks for. Where the Hessian is not positive definite, fabric is
+    /// about to buckle: then with a mean of it and the Gauss-Newton form; the latter's share is kept from
+    /// step to step. On its own that form knows nothing of the compression that makes fabric buckle, and a
+    /// barely definite matrix runs far along the buckling shapes.
     ///
     /// In a sheet that supports or loads hold, geometric stiffness is what resists (a pendulum has no other),
     /// and the Gauss-Newton form lacks it: there a multiple of the identity is added, little more than it
     /// takes.
     ///
     /// False when no matrix could be factorised. Throws std::bad_alloc.
-    [[nodiscard]] bool exact_step(const NewtonPoint& at, double rotation, Eigen::VectorXd& step);
+    [[nodiscard]] bool exact_step(const NewtonPoint& at, double rotation, double tolerance,
+                                  Eigen::VectorXd& step);
 
     /// The step with the Gauss-Newton form, which `at.sums` holds.
     [[nodiscard]] bool gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step);
@@ -66,7 +67,7 @@ class NewtonSystem {
     void build_matrix(const NewtonPoint& at, Order order, double shift);
     bool factorize(const NewtonPoint& at, Order order, double shift = 0.0);
     bool factorize_mean(const NewtonPoint& at);
-    bool solve_with_last_factor(const NewtonPoint& at, Eigen::VectorXd& step);
+    bool solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step);
     bool finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step);
 
     const std::vector<char>& held_;
