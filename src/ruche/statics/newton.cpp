@@ -153,9 +153,14 @@ void Newton::relax_spots() {
 /// Where the last step bent the sheet in a few places only, those come to rest on their own, all else held.
 void Newton::settle_places() {
     if (wary_ || contact_ || !model().input().rods.empty()) return;
-    for (const std::vector<int>& place : places_) {
-        const SheetPiece piece = cut_out(model(), place, x_);
-        piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x_)), x_);
+    try {
+        for (const std::vector<int>& place : bending_places(model(), held_, spins_)) {
+            if (control_.stopped() || control_.timed_out()) return;
+            const SheetPiece piece = cut_out(model(), place, x_);
+            piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x_)), x_);
+        }
+    } catch (const std::bad_alloc&) {
+        // It is not needed.
     }
 }
 
@@ -163,9 +168,12 @@ Eigen::VectorXd Newton::settle(const Eigen::VectorXd& start) {
     constexpr int most_steps = 10;
     constexpr double settled = 1e-3;  // rad
     x_ = start;
+    if (!missing_memory().empty()) return x_;
     for (rotation_ = turning; rotation_ > settled && iterations_ < most_steps; ++iterations_) {
         evaluate(Order::hessian);
-        if (residual() <= options_.residual_tolerance_n || !step(Order::hessian)) break;
+        if (residual() <= options_.residual_tolerance_n || control_.stopped() || control_.timed_out() ||
+            !step(Order::hessian))
+            break;
         relax_spots();
     }
     return x_;
@@ -316,9 +324,8 @@ bool Newton::step(Order order) {
     const bool solved = exact ? system_.exact_step(here(), rotation_, options_.residual_tolerance_n, step_)
                               : system_.gauss_newton_step(here(), step_);
     if (!solved) return false;
-    const std::vector<Vec3> spins = retraction_.spins(x_, step_);
-    rotation_ = retraction_.rms_rotation(spins);
-    places_ = bending_places(model(), held_, spins);
+    spins_ = retraction_.spins(x_, step_);
+    rotation_ = retraction_.rms_rotation(spins_);
     const bool moved = line_search();
     if (exact) system_.adapt(halved_);
     return moved;

@@ -34,7 +34,8 @@ class Newton {
     /// For a piece of a sheet: its rim may hold it as firmly as it likes, it is no load.
     Newton(const SheetPiece& piece, bool loaded, const SolveOptions& options, const Control& control);
 
-    /// Brings a piece nearer to equilibrium, from its state: some steps, until one hardly turns it any more.
+    /// Brings a piece nearer to equilibrium, from its state: some steps, until one hardly turns it any more;
+    /// none when there is not enough memory.
     Eigen::VectorXd settle(const Eigen::VectorXd& start);
 
     /// The start that a shape on another mesh of the layout makes.
@@ -95,9 +96,9 @@ class Newton {
     AssembledSums sums_;
     AssembledSums trial_;
     EnergyTerms terms_;
-    bool halved_ = false;                   // the last line search had to
-    std::vector<std::vector<int>> places_;  // where the last step bent the sheet, if that was in few places
-    double rotation_ = infinity;            // rms of the last step
+    bool halved_ = false;         // the last line search had to
+    std::vector<Vec3> spins_;     // of the triangles in the last step
+    double rotation_ = infinity;  // rms of the last step
     int iterations_ = 0;
     std::vector<double> residuals_;  // of all runs
     bool wary_ = false;

@@ -73,6 +73,19 @@ ModelInput patchwork() {
     return input;
 }
 
+ModelInput two_strips() {
+    ModelInput sheet;
+    sheet.mesh = random_grid(16, 16, 0.2, 5);
+    for (const Triangle& tri : sheet.mesh.triangles) {
+        const double x = (sheet.mesh.vertices[tri[0]].x() + sheet.mesh.vertices[tri[1]].x() +
+                          sheet.mesh.vertices[tri[2]].x()) /
+                         3.0;
+        sheet.print.push_back({.front = (x > 4 && x < 6) || (x > 10 && x < 12) ? 0.8 : 0.0});
+    }
+    sheet.prestretch = {1.4, 1.4};
+    return sheet;
+}
+
 ModelInput rod_patchwork() {
     ModelInput input = patchwork();
     input.print.clear();

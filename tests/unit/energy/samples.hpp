@@ -29,6 +29,9 @@ Eigen::VectorXd rolled(const Model& model, const Roll& roll);
 /// A 5 x 4 grid on which every kind of edge occurs: bare-bare, bare-printed, printed-printed, boundary.
 ModelInput patchwork();
 
+/// A sheet of 16 x 16 cells with two strips across it, which cut the fabric into three pieces.
+ModelInput two_strips();
+
 /// The patchwork without print, with rods on the front and the back that cross, run side by side and bend.
 ModelInput rod_patchwork();
 

@@ -13,20 +13,6 @@ using namespace ruche::test;
 
 namespace {
 
-/// A sheet of 16 x 16 cells with two strips across it, which cut the fabric into three pieces.
-ModelInput two_strips() {
-    ModelInput sheet;
-    sheet.mesh = random_grid(16, 16, 0.2, 5);
-    for (const Triangle& tri : sheet.mesh.triangles) {
-        const double x = (sheet.mesh.vertices[tri[0]].x() + sheet.mesh.vertices[tri[1]].x() +
-                          sheet.mesh.vertices[tri[2]].x()) /
-                         3.0;
-        sheet.print.push_back({.front = (x > 4 && x < 6) || (x > 10 && x < 12) ? 0.8 : 0.0});
-    }
-    sheet.prestretch = {1.4, 1.4};
-    return sheet;
-}
-
 struct Sagging {
     Model model;
     std::vector<char> held;
