@@ -91,8 +91,7 @@ SheetPiece cut_out(const Model& whole, std::span<const int> vertices, const Eige
     for (int k = 0; k < edge_unknowns; ++k) {
         std::array<int, 4> around = piece.model.vertices_of_edge_unknown(k);
         for (int& v : around) v = cut.vertices[v];
-        const auto found = unknown_of_edge.find(std::minmax(around[0], around[1]));
-        piece.unknowns.push_back(found == unknown_of_edge.end() ? -1 : found->second);
+        piece.unknowns.push_back(unknown_of_edge.at(std::minmax(around[0], around[1])));
         const bool feels = std::any_of(around.begin(), around.end(), [&](int v) { return cut.free[v] != 0; });
         piece.held.push_back(feels ? 0 : 1);
     }
@@ -100,10 +99,9 @@ SheetPiece cut_out(const Model& whole, std::span<const int> vertices, const Eige
 }
 
 Eigen::VectorXd SheetPiece::take(const Eigen::VectorXd& whole) const {
-    Eigen::VectorXd piece = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns.size()));
-    for (std::size_t i = 0; i < unknowns.size(); ++i) {
-        if (unknowns[i] >= 0) piece[static_cast<Eigen::Index>(i)] = whole[unknowns[i]];
-    }
+    Eigen::VectorXd piece(static_cast<Eigen::Index>(unknowns.size()));
+    for (std::size_t i = 0; i < unknowns.size(); ++i)
+        piece[static_cast<Eigen::Index>(i)] = whole[unknowns[i]];
     return piece;
 }
 

@@ -13,7 +13,7 @@ namespace ruche {
 struct SheetPiece {
     Model model;
     std::vector<char> held;     ///< one flag per unknown of the piece
-    std::vector<int> unknowns;  ///< each one's number in the whole sheet; -1: a rim that only the piece has
+    std::vector<int> unknowns;  ///< each one's number in the whole sheet
 
     /// Its part of a state of the whole sheet.
     Eigen::VectorXd take(const Eigen::VectorXd& whole) const;
