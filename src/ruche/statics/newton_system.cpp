@@ -9,6 +9,8 @@ namespace ruche {
 namespace {
 
 constexpr double first_share = 0.1;
+// A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom enough.
+constexpr double share_after_turning = 0.3;
 constexpr double least_share = 0.005;  // below it none
 constexpr double share_grows = 4.0;
 constexpr double share_falls = 8.0;  // 16 makes stars slower, 4 strips
@@ -52,10 +54,7 @@ bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
     at.model.evaluate(at.x, Order::gauss_newton, gauss_newton_);
     mean_.gradient = at.sums.gradient;
     mean_.hessian.resize(at.sums.hessian.size());
-    // A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom
-    // enough.
-    if (share_ == 0.0 && after_gauss_newton_) share_ = 1.0;
-    if (share_ == 0.0) share_ = first_share;
+    if (share_ == 0.0) share_ = after_gauss_newton_ ? share_after_turning : first_share;
     for (;; share_ = std::clamp(share_grows * share_, first_share, 1.0)) {
         for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
             mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
@@ -78,8 +77,8 @@ void NewtonSystem::adapt(bool halved) {
 /// or the Hessian is not positive definite.
 bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step) {
     constexpr double accuracy = 1e-3;  // of the residual
-    constexpr int most_steps = 6;      // a solve costs about a tenth of a factorisation
-    constexpr double hopeful = 0.5;    // by which each step has to lower the residual
+    constexpr int most_steps = 8;      // a solve costs about a tenth of a factorisation
+    constexpr double hopeful = 0.7;    // by which each step has to lower the residual as the factor weighs it
     build_matrix(at, Order::hessian, 0.0);
     const NodePattern& pattern = at.model.pattern();
     const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
@@ -90,6 +89,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     const double enough = std::max(accuracy * first, 0.3 * tolerance);
     Eigen::VectorXd direction = cholesky_.solve(rest);
     double product = rest.dot(direction);
+    const double first_product = product;
     step.setZero(at.model.size());
     for (int i = 0; i < most_steps; ++i) {
         const Eigen::VectorXd pull = matrix.selfadjointView<Eigen::Lower>() * direction;
@@ -99,9 +99,11 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
         rest -= (product / curvature) * pull;
         const double left = rest.norm();
         if (left < enough) return true;
-        if (left > std::pow(hopeful, i + 1) * first) return false;
+        // Judged by its largest forces alone, a step along a soft direction would seem to go wrong: what it
+        // leaves behind are small errors of stiff elements.
         const Eigen::VectorXd next = cholesky_.solve(rest);
         const double next_product = rest.dot(next);
+        if (next_product > std::pow(hopeful, 2 * (i + 1)) * first_product) return false;
         direction = next + (next_product / product) * direction;
         product = next_product;
     }
