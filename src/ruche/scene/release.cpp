@@ -27,14 +27,14 @@ SolveOptions as_a_start(const Scene& scene) {
 }
 
 /// Meshes of the same pattern, finest first, each with elements three times as long as the one before (twice
-/// where meshes are nested) as far as that saves enough triangles to be worth a level. None where something
-/// else than the sheet's own forces acts.
+/// where that is very fine or meshes are nested) as far as that saves enough triangles to be worth a level.
+/// None where something else than the sheet's own forces acts.
 std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& finest) {
     constexpr int small = 1500;    // triangles: solved faster than coarsened
     constexpr double worth = 0.4;  // of the triangles of the level above, at most
-    // With 2 there are levels that hardly save the finest a step; with 4 it takes more steps on 80 000
-    // triangles.
-    constexpr double coarsening = 3.0;
+    // Twice as long below, levels hardly save the finest mesh a step; four times, it takes more steps with
+    // 80 000 triangles, and three times with 200 000.
+    constexpr int very_fine = 100'000;  // triangles
     std::vector<PrintMesh> layouts;
     if (!scene.solver.coarse_start || !scene.supports.empty() || !scene.forces.empty() ||
         !scene.pattern.mesh.empty())
@@ -46,6 +46,7 @@ std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& fine
         if (options.subdivisions > 0) {
             --options.subdivisions;
         } else {
+            const double coarsening = count > very_fine ? 2.0 : 3.0;
             options.size_mm *= coarsening;
             options.fabric_size_mm *= coarsening;
             options.elements_across = std::max(0.5, options.elements_across / coarsening);
