@@ -10,6 +10,7 @@ namespace {
 
 constexpr double first_share = 0.1;
 // A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom enough.
+// Where this is not either, all of it comes next.
 constexpr double share_after_turning = 0.3;
 constexpr double least_share = 0.005;  // below it none
 constexpr double share_grows = 4.0;
@@ -91,7 +92,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     double product = rest.dot(direction);
     const double first_product = product;
     step.setZero(at.model.size());
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 1;; ++i) {
         const Eigen::VectorXd pull = matrix.selfadjointView<Eigen::Lower>() * direction;
         const double curvature = direction.dot(pull);
         if (!(curvature > 0.0)) return false;
@@ -99,15 +100,15 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
         rest -= (product / curvature) * pull;
         const double left = rest.norm();
         if (left < enough) return true;
-        // Judged by its largest forces alone, a step along a soft direction would seem to go wrong: what it
-        // leaves behind are small errors of stiff elements.
+        if (i == most_steps) return false;
+        // By the plain norm a step along a soft direction seems to go wrong: what it leaves behind are small
+        // errors of stiff elements.
         const Eigen::VectorXd next = cholesky_.solve(rest);
         const double next_product = rest.dot(next);
-        if (next_product > std::pow(hopeful, 2 * (i + 1)) * first_product) return false;
+        if (!(next_product <= std::pow(hopeful, 2 * i) * first_product)) return false;
         direction = next + (next_product / product) * direction;
         product = next_product;
     }
-    return false;
 }
 
 bool NewtonSystem::finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step) {
