@@ -11,6 +11,7 @@
 #include "ruche/statics/bending_places.hpp"
 #include "ruche/statics/fabric_relaxation.hpp"
 #include "ruche/statics/iterate.hpp"
+#include "ruche/statics/smoothing.hpp"
 #include "ruche/statics/starts.hpp"
 #include "ruche/statics/tangle.hpp"
 
@@ -148,6 +149,20 @@ void Newton::relax_spots() {
         }
         cover_contacts(x_);
     }
+}
+
+/// Takes short waves out before the first exact Hessian: the compression that the Gauss-Newton form leaves
+/// behind in single elements makes that one indefinite, or so nearly so that its step is lost along soft
+/// shapes.
+void Newton::smooth() {
+    constexpr int sweeps = 12;  // each a fiftieth of a factorisation; 20 save no more steps
+    const double turned = rotation_;
+    evaluate(Order::hessian);
+    step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, sweeps);
+    rotation_ = retraction_.rms_rotation(x_, step_);
+    // Where no part of it lowers the energy, Newton's method goes on from here as well.
+    if (rotation_ > 0.0 && step_.allFinite()) (void)line_search();
+    rotation_ = turned;
 }
 
 /// Where the last step bent the sheet in a few places only, those come to rest on their own, all else held.
@@ -392,6 +407,7 @@ void Newton::iterate(Equilibrium& result) {
         if (!stalled) {
             relax_spots();
             settle_places();
+            if (!exact && rotation_ <= turning) smooth();
         }
     }
 }

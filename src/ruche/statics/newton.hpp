@@ -74,6 +74,7 @@ class Newton {
     bool line_search();
     void relax_spots();
     void settle_places();
+    void smooth();
     void relax_while(Eigen::VectorXd& x, double worth);
     bool leave_saddle();
     std::string missing_memory() const;

@@ -17,7 +17,8 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
-constexpr int most_rings = 2;  // of vertices around a spot that a step has thrown off
+constexpr int rings_at_rest = 1;     // of vertices around a spot, which move with it
+constexpr int rings_thrown_off = 2;  // the same where a step has thrown the spot off
 constexpr std::size_t most_nodes_with_rings = 150;
 constexpr double most_with_rings = 0.05;  // share of all nodes
 constexpr double good_enough = 0.01;      // of the spot's first residual: its surroundings will move too
@@ -241,16 +242,11 @@ double NonlinearElimination::relax_spots(const Model& model, std::vector<std::ve
     return std::accumulate(fell.begin(), fell.end(), 0.0);
 }
 
-double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
-    return relax_spots(model, spots(model, limiting_force(gradient, infinity), 0), nullptr, x, gradient);
-}
-
-double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,
-                                        Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
-    const double limit = limiting_force(gradient, much);
-    std::vector<std::vector<int>> found;
-    for (int rings = most_rings; rings >= 0; --rings) {
-        found = spots(model, limit, rings);
+/// Spots with so many rings of vertices around them as stay cheap.
+std::vector<std::vector<int>> NonlinearElimination::spots_with_rings(const Model& model, double limit,
+                                                                     int rings) {
+    for (;; --rings) {
+        std::vector<std::vector<int>> found = spots(model, limit, rings);
         std::size_t largest = 0;
         std::size_t all = 0;
         for (const std::vector<int>& nodes : found) {
@@ -258,11 +254,21 @@ double NonlinearElimination::after_step(const Model& model, const Eigen::VectorX
             all += nodes.size();
         }
         // On a coarse mesh the surroundings of a few spots are soon the whole sheet.
-        if (largest <= most_nodes_with_rings &&
-            static_cast<double>(all) <= most_with_rings * model.pattern().node_count())
-            break;
+        if (rings == 0 || (largest <= most_nodes_with_rings &&
+                           static_cast<double>(all) <= most_with_rings * model.pattern().node_count()))
+            return found;
     }
-    return relax_spots(model, std::move(found), &from, x, gradient);
+}
+
+double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+    return relax_spots(model, spots_with_rings(model, limiting_force(gradient, infinity), rings_at_rest),
+                       nullptr, x, gradient);
+}
+
+double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,
+                                        Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
+    return relax_spots(model, spots_with_rings(model, limiting_force(gradient, much), rings_thrown_off),
+                       &from, x, gradient);
 }
 
 }  // namespace ruche

@@ -21,15 +21,15 @@ class NonlinearElimination {
     bool is_concentrated(const Eigen::VectorXd& gradient);
 
     /// Moves x to lower energy and `gradient`, which is x's, along with it; returns by how much the energy
-    /// fell, mJ. A spot is where the force is a good part of the largest one. `model` is the one given to the
-    /// constructor or differs from it in the material only.
+    /// fell, mJ. A spot is where the force is a good part of the largest one, with its neighbours as far as
+    /// that stays cheap. `model` is the one given to the constructor or differs from it in the material only.
     double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient);
 
     /// The same at the end x of a step from `from` that has thrown some spots far off, those with a force
-    /// above `much` (N) too and, as far as that stays cheap, their surroundings: small elements at corners of
-    /// strips fold over in a step that suits all others, and each Newton step would open such a fold by a
-    /// third more only. Each begins with the shape that it had at `from`, carried along by its surroundings,
-    /// where that has less energy.
+    /// above `much` (N) too, and with more of their surroundings: small elements at corners of strips fold
+    /// over in a step that suits all others, and each Newton step would open such a fold by a third more
+    /// only. Each begins with the shape that it had at `from`, carried along by its surroundings, where that
+    /// has less energy.
     double after_step(const Model& model, const Eigen::VectorXd& from, double much, Eigen::VectorXd& x,
                       Eigen::VectorXd& gradient);
 
@@ -41,6 +41,7 @@ class NonlinearElimination {
     ForceRange measure_forces(const Eigen::VectorXd& gradient);
     double limiting_force(const Eigen::VectorXd& gradient, double much);
     std::vector<std::vector<int>> spots(const Model& model, double limit, int rings);
+    std::vector<std::vector<int>> spots_with_rings(const Model& model, double limit, int rings);
     void carry_along(const Model& model, const std::vector<int>& nodes, const Eigen::VectorXd& from,
                      Eigen::VectorXd& x) const;
     double relax_spots(const Model& model, std::vector<std::vector<int>> spots, const Eigen::VectorXd* from,
