@@ -139,9 +139,11 @@ bool Newton::line_search() {
 void Newton::relax_spots() {
     constexpr double converging = 0.01;
     constexpr int most_sweeps = 2;
+    // While the sheet turns, spots with their neighbours go to shapes of their own that fit no other part.
+    const int rings = rotation_ <= turning ? 1 : 0;
     for (int sweep = 0; sweep < most_sweeps && largest(trial_) > converging * residual(); ++sweep) {
         const Eigen::VectorXd from = x_;
-        elimination_(model(), x_, trial_.gradient);
+        elimination_(model(), x_, trial_.gradient, rings);
         // It knows neither of tangles nor of obstacles that are not near already.
         if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) {
             x_ = from;
@@ -283,7 +285,7 @@ void Newton::relax_while(Eigen::VectorXd& x, double worth) {
     for (int sweep = 0; sweep < most_sweeps && std::isfinite(energy); ++sweep) {
         // Forces all over the sheet are the work of Newton's method, which is cheaper there.
         const bool last = !elimination_.is_concentrated(trial_.gradient);
-        const double fell = elimination_(model(), x, trial_.gradient);
+        const double fell = elimination_(model(), x, trial_.gradient, 1);
         energy -= fell;
         if (last || fell < worth * energy) break;
     }

@@ -17,8 +17,7 @@ constexpr double most_vertices =
     0.03;  // share of the vertices that may; when more would, the hardest of them
 constexpr std::size_t most_nodes = 400;  // of one spot: more is no spot, and its dense factor would be dear
 constexpr int most_steps = 8;
-constexpr int rings_at_rest = 1;     // of vertices around a spot, which move with it
-constexpr int rings_thrown_off = 2;  // the same where a step has thrown the spot off
+constexpr int rings_thrown_off = 2;  // of vertices around a spot that a step has thrown off
 constexpr std::size_t most_nodes_with_rings = 150;
 constexpr double most_with_rings = 0.05;  // share of all nodes
 constexpr double good_enough = 0.01;      // of the spot's first residual: its surroundings will move too
@@ -260,9 +259,10 @@ std::vector<std::vector<int>> NonlinearElimination::spots_with_rings(const Model
     }
 }
 
-double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient) {
-    return relax_spots(model, spots_with_rings(model, limiting_force(gradient, infinity), rings_at_rest),
-                       nullptr, x, gradient);
+double NonlinearElimination::operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient,
+                                        int rings) {
+    return relax_spots(model, spots_with_rings(model, limiting_force(gradient, infinity), rings), nullptr, x,
+                       gradient);
 }
 
 double NonlinearElimination::after_step(const Model& model, const Eigen::VectorXd& from, double much,

@@ -21,9 +21,10 @@ class NonlinearElimination {
     bool is_concentrated(const Eigen::VectorXd& gradient);
 
     /// Moves x to lower energy and `gradient`, which is x's, along with it; returns by how much the energy
-    /// fell, mJ. A spot is where the force is a good part of the largest one, with its neighbours as far as
-    /// that stays cheap. `model` is the one given to the constructor or differs from it in the material only.
-    double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient);
+    /// fell, mJ. A spot is where the force is a good part of the largest one, with as many of `rings` of
+    /// vertices around it as stay cheap. `model` is the one given to the constructor or differs from it in
+    /// the material only.
+    double operator()(const Model& model, Eigen::VectorXd& x, Eigen::VectorXd& gradient, int rings);
 
     /// The same at the end x of a step from `from` that has thrown some spots far off, those with a force
     /// above `much` (N) too, and with more of their surroundings: small elements at corners of strips fold

@@ -57,7 +57,7 @@ TEST_CASE("nonlinear elimination: a vertex out of place is brought back and noth
     for (; rounds < 4 && distance() > enough; ++rounds) {
         const double before = sheet.model.energy(x);
         Eigen::VectorXd gradient = sheet.model.gradient(x);
-        const double fell = eliminate(sheet.model, x, gradient);
+        const double fell = eliminate(sheet.model, x, gradient, 1);
         CHECK(fell > 0.0);
         CHECK(std::abs(before - fell - sheet.model.energy(x)) < 1e-13 * before);    // rounding of the sum
         CHECK((gradient - sheet.model.gradient(x)).cwiseAbs().maxCoeff() < 1e-11);  // rounding, N
@@ -73,7 +73,7 @@ TEST_CASE("nonlinear elimination: what a support holds stays") {
     Eigen::VectorXd gradient = sheet.model.gradient(x);
     for (int c = 0; c < 3; ++c) gradient[3 * sheet.vertex + c] = 0.0;
     NonlinearElimination eliminate(sheet.model, held);
-    CHECK(eliminate(sheet.model, x, gradient) > 0.0);
+    CHECK(eliminate(sheet.model, x, gradient, 1) > 0.0);
     CHECK(gradient.segment<3>(3 * sheet.vertex).isZero(0.0));
     CHECK(x.segment<3>(3 * sheet.vertex) == sheet.x.segment<3>(3 * sheet.vertex));
 }
