@@ -124,7 +124,7 @@ class Trial {
         if (exact && variant_.mean_where_indefinite) system_.adapt(halved);
         if (!lower) return false;
         if (variant_.relaxed_spots && trial.gradient.cwiseAbs().maxCoeff() > 0.01 * before)
-            elimination_(model_, candidate, trial.gradient);
+            elimination_(model_, candidate, trial.gradient, 1);
         x_ = candidate;
         return true;
     }

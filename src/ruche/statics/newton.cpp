@@ -269,7 +269,7 @@ Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     Eigen::VectorXd x = transfer(start, model(), retraction_);
     // Where the old mesh was too coarse, at corners of strips, small elements come out crushed or folded
     // over, and fabric everywhere only nearly as it would hang between the strips.
-    relax_while(x, 0.01);
+    relax_while(x, 1e-4);
     try {
         FabricRelaxation(model(), held_, vertex_order_)(model(), x);
     } catch (const std::bad_alloc&) {
