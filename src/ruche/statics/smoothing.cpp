@@ -35,8 +35,9 @@ class GaussSeidel {
             for (int k = size; k < length; ++k) {
                 for (int c = 0; c < size; ++c) lower_.push_back(static_cast<float>(column[k + c * length]));
             }
-            moves_[node] = std::none_of(held.begin() + first, held.begin() + first + size,
-                                        [](char is_held) { return is_held != 0; });
+            const bool moves = std::none_of(held.begin() + first, held.begin() + first + size,
+                                            [](char is_held) { return is_held != 0; });
+            moves_[node] = moves ? 1 : 0;
             if (moves_[node] == 0) continue;
             if (node < vertices_) {
                 const Eigen::Map<const Matrix3d, 0, Eigen::OuterStride<>> own(column,
