@@ -19,6 +19,7 @@
 #include "ruche/statics/newton_system.hpp"
 #include "ruche/statics/nonlinear_elimination.hpp"
 #include "ruche/statics/retraction.hpp"
+#include "ruche/statics/smoothing.hpp"
 #include "ruche/statics/sparse_cholesky.hpp"
 #include "ruche/statics/starts.hpp"
 #include "ruche/study/benchmark_scene.hpp"
@@ -36,13 +37,15 @@ struct Variant {
     bool first_gauss_newton;     // while a step turns the sheet by more than `turning`
     bool mean_where_indefinite;  // of both forms, else the Gauss-Newton form alone
     bool relaxed_spots;
+    bool smoothed;  // before the first exact Hessian
 };
 constexpr Variant variants[] = {
-    {"straight steps", false, false, false, false},
-    {"+ retraction", true, false, false, false},
-    {"+ Gauss-Newton while turning", true, true, false, false},
-    {"+ mean where indefinite", true, true, true, false},
-    {"+ relaxed spots", true, true, true, true},
+    {"straight steps", false, false, false, false, false},
+    {"+ retraction", true, false, false, false, false},
+    {"+ Gauss-Newton while turning", true, true, false, false, false},
+    {"+ mean where indefinite", true, true, true, false, false},
+    {"+ relaxed spots", true, true, true, true, false},
+    {"+ smoothing", true, true, true, true, true},
 };
 
 struct Outcome {
@@ -80,6 +83,7 @@ class Trial {
             if (outcome.converged || !find_step(exact)) break;
             rotation_ = retraction_.rms_rotation(x_, step_);
             moved = line_search(exact);
+            if (variant_.smoothed && moved && !exact && rotation_ <= turning) smooth();
         }
         outcome.factorizations = system_.factorizations();
         outcome.energy = energy_;
@@ -95,6 +99,12 @@ class Trial {
         AssembledSums form;
         model_.evaluate(x_, Order::gauss_newton, form);
         return system_.gauss_newton_step({model_, x_, form}, step_);
+    }
+
+    void smooth() {
+        energy_ = model_.evaluate(x_, Order::hessian, sums_).total();
+        step_ = smoothing_step(model_.pattern(), held_, sums_.hessian, sums_.gradient, smoothing_sweeps);
+        if (step_.norm() > 0.0) (void)line_search(false);
     }
 
     Eigen::VectorXd at(double t) {
@@ -124,7 +134,7 @@ class Trial {
         if (exact && variant_.mean_where_indefinite) system_.adapt(halved);
         if (!lower) return false;
         if (variant_.relaxed_spots && trial.gradient.cwiseAbs().maxCoeff() > 0.01 * before)
-            elimination_(model_, candidate, trial.gradient, 1);
+            elimination_(model_, candidate, trial.gradient, rotation_ <= turning ? 1 : 0);
         x_ = candidate;
         return true;
     }

@@ -157,10 +157,9 @@ void Newton::relax_spots() {
 /// behind in single elements makes that one indefinite, or so nearly so that its step is lost along soft
 /// shapes.
 void Newton::smooth() {
-    constexpr int sweeps = 12;  // each a fiftieth of a factorisation; 20 save no more steps
     const double turned = rotation_;
     evaluate(Order::hessian);
-    step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, sweeps);
+    step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, smoothing_sweeps);
     rotation_ = retraction_.rms_rotation(x_, step_);
     // Where no part of it lowers the energy, Newton's method goes on from here as well.
     if (rotation_ > 0.0 && step_.allFinite()) (void)line_search();

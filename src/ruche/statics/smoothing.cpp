@@ -1,6 +1,6 @@
 #include "ruche/statics/smoothing.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <vector>
 
@@ -43,9 +43,9 @@ class GaussSeidel {
                 const Eigen::Map<const Matrix3d, 0, Eigen::OuterStride<>> own(column,
                                                                               Eigen::OuterStride<>(length));
                 blocks_[node] = own.selfadjointView<Eigen::Lower>();
-                inverse_blocks_[node] = blocks_[node].inverse();
-                definite_ &= own(0, 0) > 0.0 && blocks_[node].topLeftCorner<2, 2>().determinant() > 0.0 &&
-                             blocks_[node].determinant() > 0.0;
+                const Eigen::LLT<Matrix3d> factor(blocks_[node]);
+                definite_ &= factor.info() == Eigen::Success;
+                inverse_blocks_[node] = factor.solve(Matrix3d::Identity());
             } else {
                 edge_diagonal_[node - vertices_] = *column;
                 definite_ &= *column > 0.0;
