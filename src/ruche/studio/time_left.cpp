@@ -5,8 +5,8 @@
 
 namespace ruche {
 
-static constexpr double usual_steps = 7.0;
-static constexpr double refinement = 4.0;
+static constexpr double usual_steps = 5.0;
+static constexpr double refinement = 7.0;
 
 static double work(double triangles) { return std::pow(triangles, 1.2); }
 
@@ -24,8 +24,11 @@ void TimeLeft::step(int triangles, int iteration, Clock::time_point now) {
     }
     triangles_ = triangles;
     double ahead = std::max(1.0, usual_steps - iteration) * work(triangles);
-    for (double next = refinement * triangles; next < 1.5 * finest_; next *= refinement)
-        ahead += usual_steps * work(std::min<double>(next, finest_));
+    for (double next = triangles; next < finest_;) {
+        next *= refinement;
+        if (next > 0.5 * finest_) next = finest_;
+        ahead += usual_steps * work(next);
+    }
     spent_ += work(triangles);
     share_ = std::max(share_, spent_ / (spent_ + ahead));
     if (pace_ > 0.0) left_ = pace_ * ahead;

@@ -4,8 +4,8 @@
 
 namespace ruche {
 
-/// Guesses how long a release still takes. A release climbs meshes, each with about four times the triangles
-/// of the one before; a step costs about the 1.2th power of their number, and a mesh takes about seven steps.
+/// Guesses how long a release still takes. A release climbs meshes, each with about seven times the triangles
+/// of the one before; a step costs about the 1.2th power of their number, and a mesh takes about five steps.
 /// The pace is measured as it goes. Good to a factor of two.
 class TimeLeft {
   public:

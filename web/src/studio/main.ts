@@ -113,6 +113,7 @@ class Studio {
             this.mine = id;
             if (kind === "release") this.showBench();
             await this.refreshJobs();
+            if (kind === "release") this.live.element.scrollIntoView({ block: "nearest" });  // settings may reach far below
         } catch (error) {
             this.fail(error);
         }
