@@ -17,8 +17,7 @@ TEST_CASE("time left: shrinks towards nothing over a usual release, its share gr
     CHECK(guess.seconds() < 0.0);
     const auto meshes = {3100, 13000, 91000};  // the torus, with elements of 0.25 mm
     double whole = 0.0;
-    for (const int triangles : meshes)
-        whole += 5.0 * std::chrono::duration<double>(cost(triangles)).count();
+    for (const int triangles : meshes) whole += 5.0 * std::chrono::duration<double>(cost(triangles)).count();
     double spent = 0.0;
     double share = 0.0;
     for (const int triangles : meshes)
