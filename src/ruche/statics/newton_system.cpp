@@ -40,18 +40,20 @@ void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift
     }
 }
 
-bool NewtonSystem::factorize(const NewtonPoint& at, Order order, double shift) {
+/// Solves for Newton's step as well, if one is asked for.
+bool NewtonSystem::factorize(const NewtonPoint& at, Order order, double shift, Eigen::VectorXd* step) {
     build_matrix(at, order, shift);
     if (pattern_is_new_) cholesky_ = SparseCholesky(at.model, vertex_elimination_order(at.model.pattern()));
     pattern_is_new_ = false;
     ++factorizations_;
-    const bool definite = cholesky_.factorize(matrix_);
+    const bool definite = step ? cholesky_.factorize_and_solve(matrix_, -at.sums.gradient, *step)
+                               : cholesky_.factorize(matrix_);
     factor_is_near_ = definite && order == Order::hessian && shift == 0.0;
     return definite;
 }
 
-bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
-    if (share_ == 0.0 && factorize(at, Order::hessian)) return true;
+bool NewtonSystem::step_with_mean(const NewtonPoint& at, Eigen::VectorXd& step) {
+    if (share_ == 0.0 && factorize(at, Order::hessian, 0.0, &step)) return true;
     at.model.evaluate(at.x, Order::gauss_newton, gauss_newton_);
     mean_.gradient = at.sums.gradient;
     mean_.hessian.resize(at.sums.hessian.size());
@@ -59,7 +61,7 @@ bool NewtonSystem::factorize_mean(const NewtonPoint& at) {
     for (;; share_ = std::clamp(share_grows * share_, first_share, 1.0)) {
         for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
             mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
-        if (factorize({at.model, at.x, mean_}, Order::gauss_newton)) return true;
+        if (factorize({at.model, at.x, mean_}, Order::gauss_newton, 0.0, &step)) return true;
         if (share_ == 1.0) return false;
     }
 }
@@ -88,6 +90,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     Eigen::VectorXd rest = -at.sums.gradient;
     const double first = rest.norm();
     const double enough = std::max(accuracy * first, 0.3 * tolerance);
+    cholesky_.narrow();
     Eigen::VectorXd direction = cholesky_.solve(rest);
     double product = rest.dot(direction);
     const double first_product = product;
@@ -111,36 +114,31 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     }
 }
 
-bool NewtonSystem::finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step) {
-    if (ready) step = cholesky_.solve(-at.sums.gradient);
-    return ready && step.allFinite();
-}
-
 bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tolerance,
                               Eigen::VectorXd& step) {
     constexpr double near = 0.003;  // rad: later steps are solved in a few iterations, earlier ones seldom
     if (factor_is_near_ && rotation < near && solve_with_last_factor(at, tolerance, step)) return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
-        bool ready = factorize(at, Order::hessian);
+        bool ready = factorize(at, Order::hessian, 0.0, &step);
         // The last one may have been far more than the soft directions need, which then hardly move: where
         // some parts are much stiffer than others the mean says nothing about those.
         const double first = shift_ > 0.0 ? std::max(0.1 * shift_, 1e-16 * mean) : 1e-9 * mean;
         for (shift_ = ready ? shift_ : first; !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
-            ready = factorize(at, Order::hessian, shift_);
-        return finish(at, ready, step);
+            ready = factorize(at, Order::hessian, shift_, &step);
+        return ready && step.allFinite();
     }
-    if (factorize_mean(at)) return finish(at, true, step);
+    if (step_with_mean(at, step)) return step.allFinite();
     return gauss_newton_step({at.model, at.x, mean_}, step);
 }
 
 bool NewtonSystem::gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step) {
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     after_gauss_newton_ = true;
-    bool ready = factorize(at, Order::gauss_newton);
+    bool ready = factorize(at, Order::gauss_newton, 0.0, &step);
     for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
-        ready = factorize(at, Order::gauss_newton, shift);
-    return finish(at, ready, step);
+        ready = factorize(at, Order::gauss_newton, shift, &step);
+    return ready && step.allFinite();
 }
 
 bool NewtonSystem::certify(const NewtonPoint& at) { return factorize(at, Order::hessian); }

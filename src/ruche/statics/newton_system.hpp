@@ -65,10 +65,9 @@ class NewtonSystem {
 
   private:
     void build_matrix(const NewtonPoint& at, Order order, double shift);
-    bool factorize(const NewtonPoint& at, Order order, double shift = 0.0);
-    bool factorize_mean(const NewtonPoint& at);
+    bool factorize(const NewtonPoint& at, Order order, double shift = 0.0, Eigen::VectorXd* step = nullptr);
+    bool step_with_mean(const NewtonPoint& at, Eigen::VectorXd& step);
     bool solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step);
-    bool finish(const NewtonPoint& at, bool ready, Eigen::VectorXd& step);
 
     const std::vector<char>& held_;
     bool loaded_;

@@ -27,8 +27,20 @@ class SparseCholesky {
     /// False when the matrix is not positive definite (or not finite). Throws std::bad_alloc.
     [[nodiscard]] bool factorize(std::span<const double> values) { return factor_.factorize(values); }
 
+    /// The same, and solves for one right-hand side, which is cheaper than to do it afterwards.
+    [[nodiscard]] bool factorize_and_solve(std::span<const double> values,
+                                           const Eigen::VectorXd& right_hand_side,
+                                           Eigen::VectorXd& solution) {
+        return factor_.factorize_and_solve(values, right_hand_side, solution);
+    }
+
     /// Solves with the last successful factor; one column per right-hand side.
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side) { return factor_.solve(right_hand_side); }
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_side) const {
+        return factor_.solve(right_hand_side);
+    }
+
+    /// Makes solves faster and less exact until the next factorisation, see SupernodalFactor::narrow.
+    void narrow() { factor_.narrow(); }
 
     double factor_megabytes() const {
         return static_cast<double>(factor_.structure().value_count()) * sizeof(double) / 1e6;

@@ -3,8 +3,11 @@
 #include <cblas.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <cstring>
+#include <functional>
 #include <numeric>
 
 #include "ruche/core/parallel.hpp"
@@ -146,15 +149,14 @@ void SupernodalFactor::split_tree() {
         if (parent[s] >= 0 && subtree_of[parent[s]] >= 0) {
             subtree_of[s] = subtree_of[parent[s]];
         } else if (below[s] <= largest_subtree * whole) {
-            subtree_of[s] = static_cast<int>(subtrees_.size());
-            subtrees_.push_back({.work = below[s]});
+            subtree_of[s] = static_cast<int>(tree_.subtrees.size());
+            tree_.subtrees.push_back({.work = below[s]});
         }
     }
     for (int s = 0; s < count; ++s)
-        (subtree_of[s] < 0 ? top_ : subtrees_[subtree_of[s]].supernodes).push_back(s);
+        (subtree_of[s] < 0 ? tree_.top : tree_.subtrees[subtree_of[s]].supernodes).push_back(s);
     // Short ones fill the gaps at the end.
-    std::stable_sort(subtrees_.begin(), subtrees_.end(),
-                     [](const Subtree& a, const Subtree& b) { return a.work > b.work; });
+    std::ranges::stable_sort(tree_.subtrees, std::ranges::greater(), &TreeSplit::Subtree::work);
 }
 
 void SupernodalFactor::place_entries(int s, std::span<const double> values) {
@@ -233,115 +235,71 @@ bool SupernodalFactor::factor_together(int s, std::span<const double> values) {
     return true;
 }
 
-bool SupernodalFactor::factorize(std::span<const double> values) {
+void SupernodalFactor::make_room() {
     if (!values_) values_ = std::make_unique_for_overwrite<double[]>(structure_.value_count());
+}
+
+bool SupernodalFactor::factorize(std::span<const double> values) {
+    make_room();
+    return factorize(values, nullptr);
+}
+
+/// With a solve its forward half is done as well, panel by panel.
+bool SupernodalFactor::factorize(std::span<const double> values, TriangularSolve<double>* solve) {
     workspaces_.resize(thread_count());
+    narrow_ = false;
     std::atomic<bool> definite = true;
-    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
-        for (const int s : subtrees_[i].supernodes) {
+    parallel_for_workers(tree_.subtrees.size(), [&](std::size_t i, int worker) {
+        const int subtree = static_cast<int>(i);
+        for (const int s : tree_.subtrees[i].supernodes) {
             if (!definite.load(std::memory_order_relaxed)) return;
             if (!factor_alone(s, values, workspaces_[worker])) definite = false;
+            if (definite && solve) solve->forward_in_subtree(subtree, s, worker);
         }
+        if (definite && solve) solve->leave_subtree(subtree, worker);
     });
-    for (const int s : top_) {
-        if (!definite) return false;
-        definite = factor_together(s, values);
+    if (!definite) return false;
+    if (solve) solve->leave_subtrees();
+    for (const int s : tree_.top) {
+        if (!factor_together(s, values)) return false;
+        if (solve) solve->forward_at_top(s);
     }
-    return definite;
+    return true;
 }
 
-/// y_s <- L_ss^-1 y_s, and what that takes from the rows below: those up to `last_inside` in y itself, those
-/// above it in workspace.outside.
-void SupernodalFactor::solve_forward(int s, Eigen::MatrixXd& y, int last_inside, Workspace& workspace) {
-    const int columns = structure_.columns(s);
-    const int stride = structure_.panel_rows(s);
-    const int below = stride - columns;
-    const int count = static_cast<int>(y.cols());
-    const int length = static_cast<int>(y.rows());
-    double* own = y.data() + structure_.first_column[s];
-    workspace.gathered.resize(below, count);
-    // Column by column: matrix kernels would copy the whole panel first, for a few right-hand sides.
-    for (int c = 0; c < count; ++c) {
-        double* column = own + static_cast<std::ptrdiff_t>(c) * length;
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, columns, panel(s), stride, column,
-                    1);
-        if (below == 0) continue;
-        cblas_dgemv(CblasColMajor, CblasNoTrans, below, columns, 1.0, panel(s) + columns, stride, column, 1,
-                    0.0, workspace.gathered.col(c).data(), 1);
-    }
-    const int* rows = structure_.panel_row(s) + columns;
-    for (int c = 0; c < count; ++c) {
-        for (int r = 0; r < below; ++r) {
-            Eigen::MatrixXd& to = rows[r] <= last_inside ? y : workspace.outside;
-            to(rows[r], c) -= workspace.gathered(r, c);
-        }
-    }
+bool SupernodalFactor::factorize_and_solve(std::span<const double> values, const Eigen::VectorXd& b,
+                                           Eigen::VectorXd& x) {
+    make_room();
+    TriangularSolve<double> solve(structure_, tree_, values_.get(), b);
+    if (!factorize(values, &solve)) return false;
+    x = solve.backward();
+    return true;
 }
 
-/// y_s <- L_ss^-T (y_s - L_below^T y_below).
-void SupernodalFactor::solve_backward(int s, Eigen::MatrixXd& y, Workspace& workspace) {
-    const int columns = structure_.columns(s);
-    const int stride = structure_.panel_rows(s);
-    const int below = stride - columns;
-    const int count = static_cast<int>(y.cols());
-    const int length = static_cast<int>(y.rows());
-    double* own = y.data() + structure_.first_column[s];
-    workspace.gathered.resize(below, count);
-    const int* rows = structure_.panel_row(s) + columns;
-    for (int c = 0; c < count; ++c) {
-        double* column = own + static_cast<std::ptrdiff_t>(c) * length;
-        for (int r = 0; r < below; ++r) workspace.gathered(r, c) = y(rows[r], c);
-        if (below > 0) {
-            cblas_dgemv(CblasColMajor, CblasTrans, below, columns, -1.0, panel(s) + columns, stride,
-                        workspace.gathered.col(c).data(), 1, 1.0, column, 1);
-        }
-        cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, columns, panel(s), stride, column,
-                    1);
-    }
-}
-
-Eigen::MatrixXd SupernodalFactor::solve(const Eigen::MatrixXd& b) {
-    const Eigen::Index count = b.cols();
-    Eigen::MatrixXd y(b.rows(), count);
-    for (Eigen::Index k = 0; k < b.rows(); ++k) y.row(k) = b.row(structure_.permutation[k]);
-
-    workspaces_.resize(thread_count());
-    // What a subtree takes from rows above it waits until all are done, to be added in the same order always.
-    std::vector<Eigen::MatrixXd> shares(subtrees_.size());
-    const auto rows_above = [&](const Subtree& subtree) {
-        const int root = subtree.supernodes.back();
-        return std::span(structure_.panel_row(root), structure_.panel_rows(root))
-            .subspan(structure_.columns(root));
+Eigen::MatrixXd SupernodalFactor::solve(const Eigen::MatrixXd& b) const {
+    const auto solved = [&]<class Scalar>(Scalar) {
+        TriangularSolve<Scalar> solve(structure_, tree_, values_.get(), b);
+        solve.forward();
+        return solve.backward();
     };
-    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
-        Workspace& workspace = workspaces_[worker];
-        if (workspace.outside.rows() != y.rows() || workspace.outside.cols() != count)
-            workspace.outside = Eigen::MatrixXd::Zero(y.rows(), count);
-        const int last_inside = structure_.first_column[subtrees_[i].supernodes.back() + 1] - 1;
-        for (const int s : subtrees_[i].supernodes) solve_forward(s, y, last_inside, workspace);
-        const std::span<const int> above = rows_above(subtrees_[i]);
-        shares[i].resize(static_cast<Eigen::Index>(above.size()), count);
-        for (std::size_t r = 0; r < above.size(); ++r) {
-            shares[i].row(static_cast<Eigen::Index>(r)) = workspace.outside.row(above[r]);
-            workspace.outside.row(above[r]).setZero();
+    return narrow_ ? solved(float()) : solved(double());
+}
+
+void SupernodalFactor::narrow() {
+    if (narrow_) return;
+    narrow_ = true;
+    parallel_for(structure_.supernode_count(), [&](std::size_t s) {
+        // In place, so with a detour: a piece is read before anything is written where it was.
+        std::array<float, 256> rounded;
+        const std::size_t length = structure_.panel_start[s + 1] - structure_.panel_start[s];
+        double* const from = panel(static_cast<int>(s));
+        auto* const to = reinterpret_cast<std::byte*>(from);
+        for (std::size_t begin = 0; begin < length; begin += rounded.size()) {
+            const std::size_t count = std::min(rounded.size(), length - begin);
+            for (std::size_t k = 0; k < count; ++k) rounded[k] = static_cast<float>(from[begin + k]);
+            std::memcpy(to + begin * sizeof(float), rounded.data(), count * sizeof(float));
         }
     });
-    for (std::size_t i = 0; i < subtrees_.size(); ++i) {
-        const std::span<const int> above = rows_above(subtrees_[i]);
-        for (std::size_t r = 0; r < above.size(); ++r)
-            y.row(above[r]) += shares[i].row(static_cast<Eigen::Index>(r));
-    }
-    for (const int s : top_) solve_forward(s, y, structure_.size(), workspaces_[0]);
-    for (std::size_t i = top_.size(); i-- > 0;) solve_backward(top_[i], y, workspaces_[0]);
-    parallel_for_workers(subtrees_.size(), [&](std::size_t i, int worker) {
-        const std::vector<int>& supernodes = subtrees_[i].supernodes;
-        for (std::size_t k = supernodes.size(); k-- > 0;)
-            solve_backward(supernodes[k], y, workspaces_[worker]);
-    });
-
-    Eigen::MatrixXd x(b.rows(), count);
-    for (Eigen::Index k = 0; k < b.rows(); ++k) x.row(structure_.permutation[k]) = y.row(k);
-    return x;
 }
 
 }  // namespace ruche

@@ -41,6 +41,17 @@ struct SupernodalStructure {
     std::size_t value_count() const { return panel_start.back(); }
 };
 
+/// The elimination tree, cut: subtrees that do not touch each other, none with more than a small share of the
+/// work, and the supernodes above them.
+struct TreeSplit {
+    struct Subtree {
+        std::vector<int> supernodes;  ///< in order of elimination, the root last
+        double work = 0.0;
+    };
+    std::vector<Subtree> subtrees;  ///< the one with most work first
+    std::vector<int> top;           ///< in order of elimination
+};
+
 /// Symbolic analysis (CHOLMOD, of the graph of the nodes): the structure of the factor when node
 /// `elimination_order[k]` is eliminated k-th, up to exchanges that leave the fill as it is. Throws
 /// std::bad_alloc.

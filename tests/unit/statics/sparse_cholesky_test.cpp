@@ -159,6 +159,54 @@ TEST_CASE("sparse Cholesky: same bits at any number of threads, where panels are
     CHECK((a.selfadjointView<Eigen::Lower>() * first - b).norm() < 1e-12 * b.norm());
 }
 
+TEST_CASE("sparse Cholesky: a solve along with the factorisation has the bits of one after it") {
+    const Eigen::SparseMatrix<double> a = grid_matrix(64, 0.6);
+    const Eigen::VectorXd b = right_hand_sides(a.rows(), 1);
+    Eigen::SparseMatrix<double> indefinite = a;
+    indefinite.coeffRef(5000, 5000) = -1.0;
+    const int before = thread_count();
+    SparseCholesky sparse = analysed(a);
+    REQUIRE(sparse.factorize(values_of(a)));
+    const Eigen::VectorXd after = sparse.solve(b);
+    for (const int threads : {1, 3}) {
+        CAPTURE(threads);
+        set_thread_count(threads);
+        Eigen::VectorXd along;
+        REQUIRE(sparse.factorize_and_solve(values_of(a), b, along));
+        CHECK(along == after);
+        CHECK_FALSE(sparse.factorize_and_solve(values_of(indefinite), b, along));
+    }
+    set_thread_count(before);
+}
+
+TEST_CASE(
+    "sparse Cholesky: narrowed, the error is that of single precision times the root of the condition") {
+    const double single = std::numeric_limits<float>::epsilon();
+    for (const double softest : {1e-2, 1e-6, 1e-10}) {
+        CAPTURE(softest);
+        Eigen::SparseMatrix<double> a = grid_matrix(17, 0.3);
+        const Eigen::VectorXd eigenvalues =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(a)).eigenvalues();
+        const double highest = eigenvalues[a.rows() - 1] - eigenvalues[0];
+        for (int i = 0; i < a.rows(); ++i) a.coeffRef(i, i) += softest * highest - eigenvalues[0];
+        const double root_of_condition = 1.0 / std::sqrt(softest);
+        const Eigen::MatrixXd full = dense(a);
+        const Eigen::VectorXd b = right_hand_sides(a.rows(), 1);
+        const auto norm = [&](const Eigen::VectorXd& x) { return std::sqrt(x.dot(full * x)); };
+        SparseCholesky sparse = analysed(a);
+        REQUIRE(sparse.factorize(values_of(a)));
+        const Eigen::VectorXd exact = sparse.solve(b);
+        sparse.narrow();
+        sparse.narrow();  // once is enough
+        const Eigen::VectorXd rough = sparse.solve(b);
+        const double error = norm(rough - exact) / norm(exact);
+        CHECK(error > 0.01 * single);  // it is in single precision
+        CHECK(error < single * root_of_condition);
+        REQUIRE(sparse.factorize(values_of(a)));
+        CHECK(Eigen::VectorXd(sparse.solve(b)) == exact);
+    }
+}
+
 TEST_CASE("sparse Cholesky: a model's nodes of one and of three unknowns are expanded in their places") {
     ModelInput input;
     input.mesh = rectangle_mesh(MeshKind::alternating, {.length = 6.0, .width = 3.0, .across = 4});
