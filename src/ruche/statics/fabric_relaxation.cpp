@@ -71,15 +71,16 @@ FabricRelaxation::FabricRelaxation(const Model& model, std::span<const char> hel
     matrix_.resize(value_.size());
 }
 
-/// The exact Hessian, which is in `sums_`, or where that is not positive definite the Gauss-Newton form.
-bool FabricRelaxation::factorize(const Model& model, const Eigen::VectorXd& x) {
-    const auto factorize_part_of = [this](const AssembledSums& whole) {
+/// With the exact Hessian, which is in `sums_`, or where that is not positive definite the Gauss-Newton form.
+bool FabricRelaxation::solve(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& pull,
+                             Eigen::VectorXd& displacement) {
+    const auto solve_part_of = [&](const AssembledSums& whole) {
         for (std::size_t i = 0; i < value_.size(); ++i) matrix_[i] = whole.hessian[value_[i]];
-        return cholesky_->factorize(matrix_);
+        return cholesky_->factorize_and_solve(matrix_, pull, displacement);
     };
-    if (factorize_part_of(sums_)) return true;
+    if (solve_part_of(sums_)) return true;
     model.evaluate_fabric(x, Order::gauss_newton, gauss_newton_);
-    return factorize_part_of(gauss_newton_);
+    return solve_part_of(gauss_newton_);
 }
 
 void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
@@ -91,10 +92,11 @@ void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
     bool whole = false;
     for (int step = 0; step < most_steps && !whole; ++step) {
         const double energy = model.evaluate_fabric(x, Order::hessian, sums_).total();
-        if (!std::isfinite(energy) || !factorize(model, x)) return;
+        if (!std::isfinite(energy)) return;
         Eigen::VectorXd gradient(count);
         for (Eigen::Index i = 0; i < count; ++i) gradient[i] = sums_.gradient[unknowns_[i]];
-        const Eigen::VectorXd direction = cholesky_->solve(-gradient);
+        Eigen::VectorXd direction;
+        if (!solve(model, x, -gradient, direction)) return;
         const double slope = gradient.dot(direction);
         if (!direction.allFinite() || !(slope < 0.0)) return;
         Eigen::VectorXd candidate = x;

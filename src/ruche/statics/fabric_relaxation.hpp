@@ -26,7 +26,8 @@ class FabricRelaxation {
     void operator()(const Model& model, Eigen::VectorXd& x);
 
   private:
-    bool factorize(const Model& model, const Eigen::VectorXd& x);
+    bool solve(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& pull,
+               Eigen::VectorXd& displacement);
 
     std::vector<int> unknowns_;  // of the model
     std::vector<int> value_;     // where each of the matrix's values stands in the model's Hessian

@@ -116,7 +116,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
 
 bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tolerance,
                               Eigen::VectorXd& step) {
-    constexpr double near = 0.003;  // rad: later steps are solved in a few iterations, earlier ones seldom
+    constexpr double near = 0.0015;  // rad: later steps are solved in a few iterations, earlier ones seldom
     if (factor_is_near_ && rotation < near && solve_with_last_factor(at, tolerance, step)) return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
@@ -174,8 +174,16 @@ double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hes
 }
 
 bool at_rest_or_rounded(const NewtonPoint& at, double tolerance) {
-    const std::vector<int>& start = at.model.pattern().column_start();
-    const std::vector<int>& row = at.model.pattern().row_index();
+    const NodePattern& pattern = at.model.pattern();
+    const std::vector<int>& start = pattern.column_start();
+    const std::vector<int>& row = pattern.row_index();
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const double force = at.sums.gradient.cwiseAbs().maxCoeff();
+    // Far from rest a bound tells, and its one pass over the Hessian.
+    const Eigen::Map<const Eigen::VectorXd> values(at.sums.hessian.data(),
+                                                   static_cast<Eigen::Index>(at.sums.hessian.size()));
+    const double largest_term = values.cwiseAbs().maxCoeff() * at.x.cwiseAbs().maxCoeff();
+    if (force > std::max(tolerance, epsilon * largest_term * at.model.size())) return false;
     Eigen::VectorXd limit = Eigen::VectorXd::Zero(at.x.size());
     for (Eigen::Index column = 0; column < at.x.size(); ++column) {
         for (int k = start[column]; k < start[column + 1]; ++k) {
@@ -185,7 +193,7 @@ bool at_rest_or_rounded(const NewtonPoint& at, double tolerance) {
             if (row[k] != column) limit[column] += stiffness * std::abs(at.x[row[k]]);
         }
     }
-    limit *= std::numeric_limits<double>::epsilon();
+    limit *= epsilon;
     return (at.sums.gradient.cwiseAbs().array() <= limit.array().max(tolerance)).all();
 }
 

@@ -56,12 +56,10 @@ std::vector<int> node_order(const Model& model, std::span<const int> vertex_orde
     return order;
 }
 
-SupernodalStructure structure_of(const Model& model, std::span<const int> vertex_order) {
-    const NodePattern& pattern = model.pattern();
+std::vector<int> node_sizes(const NodePattern& pattern) {
     std::vector<int> sizes(pattern.node_count());
     for (int node = 0; node < pattern.node_count(); ++node) sizes[node] = pattern.node_size(node);
-    return analyse({{pattern.node_count(), pattern.row_start(), pattern.row_nodes()}, sizes},
-                   node_order(model, vertex_order));
+    return sizes;
 }
 
 }  // namespace
@@ -70,14 +68,15 @@ SparseCholesky::SparseCholesky(const SymmetricPattern& pattern, std::vector<int>
     : SparseCholesky({pattern, std::vector<int>(pattern.size, 1)}, pattern, std::move(elimination_order)) {}
 
 SparseCholesky::SparseCholesky(const Model& model, std::span<const int> vertex_order)
-    : factor_(structure_of(model, vertex_order),
-              {model.size(), model.pattern().column_start(), model.pattern().row_index()}) {
-    prepare_blas();
-}
+    : SparseCholesky(
+          {{model.pattern().node_count(), model.pattern().row_start(), model.pattern().row_nodes()},
+           node_sizes(model.pattern())},
+          {model.size(), model.pattern().column_start(), model.pattern().row_index()},
+          node_order(model, vertex_order)) {}
 
 SparseCholesky::SparseCholesky(const NodeGraph& graph, const SymmetricPattern& pattern,
                                std::vector<int> node_order)
-    : factor_(analyse(graph, std::move(node_order)), pattern) {
+    : factor_(analyse(graph, std::move(node_order)), pattern, graph.sizes) {
     prepare_blas();
 }
 

@@ -59,48 +59,65 @@ int tiles(int length, int tile) { return (length + tile - 1) / tile; }
 
 }  // namespace
 
-SupernodalFactor::SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern)
+SupernodalFactor::SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern,
+                                   std::span<const int> node_sizes)
     : structure_(std::move(structure)), supernode_of_column_(structure_.size()) {
     for (int s = 0; s < structure_.supernode_count(); ++s) {
         for (int c = structure_.first_column[s]; c < structure_.first_column[s + 1]; ++c)
             supernode_of_column_[c] = s;
     }
-    list_entries(pattern);
+    list_blocks(pattern, node_sizes);
     list_updates();
     split_tree();
 }
 
-void SupernodalFactor::list_entries(const SymmetricPattern& pattern) {
+void SupernodalFactor::list_blocks(const SymmetricPattern& pattern, std::span<const int> node_sizes) {
     const int size = structure_.size();
+    const int nodes = static_cast<int>(node_sizes.size());
     std::vector<int> eliminated_at(size);
     for (int k = 0; k < size; ++k) eliminated_at[structure_.permutation[k]] = k;
-    const auto for_each_entry = [&](auto&& use) {
-        for (int column = 0; column < size; ++column) {
-            for (int k = pattern.column_start[column]; k < pattern.column_start[column + 1]; ++k) {
-                if (pattern.row_index[k] < column) continue;
-                const int a = eliminated_at[column];
-                const int b = eliminated_at[pattern.row_index[k]];
-                use(k, std::max(a, b), std::min(a, b));
+    std::vector<int> first_unknown(nodes + 1, 0);
+    std::partial_sum(node_sizes.begin(), node_sizes.end(), first_unknown.begin() + 1);
+    std::vector<int> node_of(size);
+    for (int node = 0; node < nodes; ++node)
+        std::fill_n(node_of.begin() + first_unknown[node], node_sizes[node], node);
+    const auto for_each_block = [&](auto&& use) {
+        for (int node = 0; node < nodes; ++node) {
+            const int column = first_unknown[node];
+            const int end = pattern.column_start[column + 1];
+            for (int k = pattern.column_start[column]; k < end;) {
+                const int row = pattern.row_index[k];
+                const int rows = node_sizes[node_of[row]];
+                if (row >= column) use(node, k, eliminated_at[row], rows);
+                k += rows;
             }
         }
     };
-    first_entry_.assign(structure_.supernode_count() + 1, 0);
-    for_each_entry([&](int, int, int column) { ++first_entry_[supernode_of_column_[column] + 1]; });
-    std::partial_sum(first_entry_.begin(), first_entry_.end(), first_entry_.begin());
-    entries_.resize(first_entry_.back());
-    std::vector<std::size_t> next(first_entry_.begin(), first_entry_.end() - 1);
-    int at = 0;
-    for_each_entry([&](int source, int row, int column) {
-        const int s = supernode_of_column_[column];
-        const int* rows = structure_.panel_row(s);
+    first_block_.assign(structure_.supernode_count() + 1, 0);
+    for_each_block([&](int node, int, int row, int) {
+        const int column = eliminated_at[first_unknown[node]];
+        ++first_block_[supernode_of_column_[std::min(row, column)] + 1];
+    });
+    std::partial_sum(first_block_.begin(), first_block_.end(), first_block_.begin());
+    blocks_.resize(first_block_.back());
+    std::vector<int> next(first_block_.begin(), first_block_.end() - 1);
+    for_each_block([&](int node, int source, int row, int rows) {
+        const int unknown = first_unknown[node];
+        const int column = eliminated_at[unknown];
+        const int s = supernode_of_column_[std::min(row, column)];
+        const int* panel_rows = structure_.panel_row(s);
         const int stride = structure_.panel_rows(s);
-        // Entries of a block come one after the other: most are found where the last one was, or below it.
-        const auto is_at = [&](int i) { return i < stride && rows[i] == row; };
-        if (!is_at(at)) {
-            const bool below = is_at(at + 1);
-            at = below ? at + 1 : static_cast<int>(std::lower_bound(rows, rows + stride, row) - rows);
-        }
-        entries_[next[s]++] = {source, at + (column - structure_.first_column[s]) * stride};
+        const auto below =
+            std::lower_bound(panel_rows, panel_rows + stride, std::max(row, column)) - panel_rows;
+        const int across = std::min(row, column) - structure_.first_column[s];
+        blocks_[next[s]++] = {
+            .source = source,
+            .source_stride = pattern.column_start[unknown + 1] - pattern.column_start[unknown],
+            .target = static_cast<int>(below) + across * stride,
+            .rows = static_cast<short>(rows),
+            .columns = static_cast<short>(node_sizes[node]),
+            .transposed = row < column,
+        };
     });
 }
 
@@ -159,11 +176,21 @@ void SupernodalFactor::split_tree() {
     std::ranges::stable_sort(tree_.subtrees, std::ranges::greater(), &TreeSplit::Subtree::work);
 }
 
-void SupernodalFactor::place_entries(int s, std::span<const double> values) {
+void SupernodalFactor::place_blocks(int s, std::span<const double> values) {
     double* to = panel(s);
     std::fill(to, panel(s + 1), 0.0);
-    for (std::size_t e = first_entry_[s]; e < first_entry_[s + 1]; ++e)
-        to[entries_[e].target] += values[entries_[e].source];
+    const int stride = structure_.panel_rows(s);
+    for (int b = first_block_[s]; b < first_block_[s + 1]; ++b) {
+        const Block& block = blocks_[b];
+        const int down = block.transposed ? stride : 1;
+        const int across = block.transposed ? 1 : stride;
+        for (int c = 0; c < block.columns; ++c) {
+            for (int r = 0; r < block.rows; ++r) {
+                to[block.target + r * down + c * across] +=
+                    values[block.source + r + c * block.source_stride];
+            }
+        }
+    }
 }
 
 /// Subtracts the updates of all supernodes below from columns [first_column, last_column) of a panel.
@@ -196,7 +223,7 @@ void SupernodalFactor::gather_updates(int s, int first_column, int last_column, 
 bool SupernodalFactor::factor_alone(int s, std::span<const double> values, Workspace& workspace) {
     const int columns = structure_.columns(s);
     const int rows = structure_.panel_rows(s);
-    place_entries(s, values);
+    place_blocks(s, values);
     gather_updates(s, structure_.first_column[s], structure_.first_column[s + 1], workspace);
     if (!factor_diagonal(columns, panel(s), rows)) return false;
     solve_below(rows - columns, columns, panel(s), panel(s) + columns, rows);
@@ -211,7 +238,7 @@ bool SupernodalFactor::factor_together(int s, std::span<const double> values) {
     const auto at = [&](int row, int column) {
         return panel(s) + row + static_cast<std::size_t>(column) * rows;
     };
-    place_entries(s, values);
+    place_blocks(s, values);
     parallel_for_workers(tiles(columns, tile_columns), [&](std::size_t tile, int worker) {
         const int begin = static_cast<int>(tile) * tile_columns;
         gather_updates(s, first + begin, first + std::min(columns, begin + tile_columns),

@@ -19,8 +19,10 @@ namespace ruche {
 /// BLAS's, on one thread each.
 class SupernodalFactor {
   public:
-    /// `pattern`: of A, as it was analysed.
-    SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern);
+    /// `pattern`: of A, as it was analysed, with nodes of so many unknowns. The unknowns of a node have the
+    /// same rows in it, those of whole nodes.
+    SupernodalFactor(SupernodalStructure structure, const SymmetricPattern& pattern,
+                     std::span<const int> node_sizes);
 
     /// `values`: of A on its pattern. False when A is not positive definite (or not finite); what was
     /// factorised before is lost then. Throws std::bad_alloc.
@@ -46,9 +48,13 @@ class SupernodalFactor {
         int from;
         int begin, end;
     };
-    struct Entry {
-        int source;  // in A's values
-        int target;  // in the panel
+    /// A's block between two nodes, column-major.
+    struct Block {
+        int source;         // of its first value in A's values
+        int source_stride;  // to the next column there
+        int target;         // of that value in the panel
+        short rows, columns;
+        bool transposed;  // in the panel: its row's node is eliminated first
     };
     /// What one thread works with.
     struct Workspace {
@@ -56,13 +62,13 @@ class SupernodalFactor {
         std::vector<double> product;  // of one update
     };
 
-    void list_entries(const SymmetricPattern& pattern);
+    void list_blocks(const SymmetricPattern& pattern, std::span<const int> node_sizes);
     void list_updates();
     void split_tree();
 
     double* panel(int s) { return values_.get() + structure_.panel_start[s]; }
     double work(int s) const;
-    void place_entries(int s, std::span<const double> values);
+    void place_blocks(int s, std::span<const double> values);
     void gather_updates(int s, int first_column, int last_column, Workspace& workspace);
     bool factor_alone(int s, std::span<const double> values, Workspace& workspace);
     bool factor_together(int s, std::span<const double> values);
@@ -74,8 +80,8 @@ class SupernodalFactor {
     std::unique_ptr<double[]> values_;  // all panels; none before the first factorisation
     bool narrow_ = false;               // at the beginning of its place each panel is in single precision
     std::vector<int> supernode_of_column_;
-    std::vector<std::size_t> first_entry_;
-    std::vector<Entry> entries_;  // by supernode
+    std::vector<int> first_block_;
+    std::vector<Block> blocks_;  // by supernode
     std::vector<int> first_update_;
     std::vector<Update> updates_;  // by supernode that receives them
     TreeSplit tree_;
