@@ -2,8 +2,6 @@
 
 #include <cblas.h>
 
-#include <algorithm>
-
 #include "ruche/core/parallel.hpp"
 
 namespace ruche {
@@ -50,6 +48,14 @@ TriangularSolve<Scalar>::TriangularSolve(const SupernodalStructure& structure, c
 }
 
 template <class Scalar>
+typename TriangularSolve<Scalar>::Panel TriangularSolve<Scalar>::panel(int s) const {
+    const int columns = structure_.columns(s);
+    const int stride = structure_.panel_rows(s);
+    return {reinterpret_cast<const Scalar*>(values_ + structure_.panel_start[s]), columns, stride,
+            stride - columns, structure_.panel_row(s) + columns};
+}
+
+template <class Scalar>
 std::span<const int> TriangularSolve<Scalar>::rows_above(int subtree) const {
     const int root = tree_.subtrees[subtree].supernodes.back();
     return std::span(structure_.panel_row(root), structure_.panel_rows(root))
@@ -87,18 +93,15 @@ void TriangularSolve<Scalar>::leave_subtrees() {
 /// above it in the worker's `outside`.
 template <class Scalar>
 void TriangularSolve<Scalar>::forward(int s, int last_inside, int worker) {
-    const int columns = structure_.columns(s);
-    const int stride = structure_.panel_rows(s);
-    const int below = stride - columns;
-    const int* rows = structure_.panel_row(s) + columns;
+    const auto [values, columns, stride, below, rows] = panel(s);
     Matrix& gathered = gathered_[worker];
     gathered.resize(below, 1);
     // Column by column: matrix kernels would copy the whole panel first, for a few right-hand sides.
     for (Eigen::Index c = 0; c < y_.cols(); ++c) {
         Scalar* const own = y_.col(c).data() + structure_.first_column[s];
-        solve_triangle(CblasNoTrans, columns, panel(s), stride, own);
+        solve_triangle(CblasNoTrans, columns, values, stride, own);
         if (below == 0) continue;
-        multiply(CblasNoTrans, {below, columns, stride}, 1, panel(s) + columns, own, 0, gathered.data());
+        multiply(CblasNoTrans, {below, columns, stride}, 1, values + columns, own, 0, gathered.data());
         for (int r = 0; r < below; ++r) {
             Matrix& to = rows[r] <= last_inside ? y_ : outside_[worker];
             to(rows[r], c) -= gathered(r, 0);
@@ -109,19 +112,16 @@ void TriangularSolve<Scalar>::forward(int s, int last_inside, int worker) {
 /// y_s <- L_ss^-T (y_s - L_below^T y_below).
 template <class Scalar>
 void TriangularSolve<Scalar>::backward(int s, int worker) {
-    const int columns = structure_.columns(s);
-    const int stride = structure_.panel_rows(s);
-    const int below = stride - columns;
-    const int* rows = structure_.panel_row(s) + columns;
+    const auto [values, columns, stride, below, rows] = panel(s);
     Matrix& gathered = gathered_[worker];
     gathered.resize(below, 1);
     for (Eigen::Index c = 0; c < y_.cols(); ++c) {
         Scalar* const own = y_.col(c).data() + structure_.first_column[s];
         for (int r = 0; r < below; ++r) gathered(r, 0) = y_(rows[r], c);
         if (below > 0) {
-            multiply(CblasTrans, {below, columns, stride}, -1, panel(s) + columns, gathered.data(), 1, own);
+            multiply(CblasTrans, {below, columns, stride}, -1, values + columns, gathered.data(), 1, own);
         }
-        solve_triangle(CblasTrans, columns, panel(s), stride, own);
+        solve_triangle(CblasTrans, columns, values, stride, own);
     }
 }
 

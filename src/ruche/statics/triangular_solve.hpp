@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "ruche/statics/supernodal_structure.hpp"
@@ -38,9 +39,12 @@ class TriangularSolve {
   private:
     using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 
-    const Scalar* panel(int s) const {
-        return reinterpret_cast<const Scalar*>(values_ + structure_.panel_start[s]);
-    }
+    struct Panel {
+        const Scalar* values;
+        int columns, stride, below;  // `below` rows after those of its own columns
+        const int* rows_below;
+    };
+    Panel panel(int s) const;
     std::span<const int> rows_above(int subtree) const;
     void forward(int s, int last_inside, int worker);
     void backward(int s, int worker);
