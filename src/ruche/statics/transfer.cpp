@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
@@ -13,6 +14,8 @@
 
 namespace ruche {
 namespace {
+
+constexpr double open_enough = 0.85;  // of the length of fabric at rest
 
 using Gradient = Eigen::Matrix<double, 3, 2>;  // of positions over the layout
 
@@ -46,6 +49,13 @@ Polar polar_decomposition(const Gradient& f) {
     polar.rotation.leftCols<2>() = f * (axes * stretches.cwiseInverse().asDiagonal() * axes.transpose());
     polar.rotation.col(2) = polar.rotation.col(0).cross(polar.rotation.col(1));
     return polar;
+}
+
+/// The stretch with no principal value below `shortest`.
+Mat2 opened(const Mat2& stretch, double shortest) {
+    const Eigen::SelfAdjointEigenSolver<Mat2> eigen(stretch);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(shortest).asDiagonal() *
+           eigen.eigenvectors().transpose();
 }
 
 /// The rotation nearest to a matrix (least squares), a mean of rotations when the matrix is their sum.
@@ -131,6 +141,8 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
 
     const Source source(from);
     const TriangleMesh& mesh = to.input().mesh;
+    const std::array<double, 2>& prestretch = to.input().prestretch;
+    const double shortest = open_enough / std::max(prestretch[0], prestretch[1]);
     Eigen::VectorXd x = Eigen::VectorXd::Zero(to.size());
     std::vector<Gradient> wanted(mesh.triangles.size());
     constexpr int chunk = 256;
@@ -144,7 +156,9 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
             for (int i = 0; i < 3; ++i)
                 blend += point.weights[i] * rotations[old.triangles[point.triangle][i]];
             const Mat3 rotation = nearest_rotation(blend);
-            wanted[t] = rotation.leftCols<2>() * mean_stretch(point) * layout_edges(mesh, t);
+            Mat2 stretch = mean_stretch(point);
+            if (to.input().print[t].bare()) stretch = opened(stretch, shortest);
+            wanted[t] = rotation.leftCols<2>() * stretch * layout_edges(mesh, t);
         }
     });
     // A first guess in the right place; its own edges do not matter.
