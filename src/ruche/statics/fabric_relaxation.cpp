@@ -71,19 +71,19 @@ FabricRelaxation::FabricRelaxation(const Model& model, std::span<const char> hel
     matrix_.resize(value_.size());
 }
 
-/// With the exact Hessian, which is in `sums_`, or where that is not positive definite the Gauss-Newton form.
-bool FabricRelaxation::solve(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& pull,
-                             Eigen::VectorXd& displacement) {
-    const auto solve_part_of = [&](const AssembledSums& whole) {
-        for (std::size_t i = 0; i < value_.size(); ++i) matrix_[i] = whole.hessian[value_[i]];
+/// With the exact Hessian, which is in `sums`, or where that is not positive definite the Gauss-Newton form.
+bool FabricRelaxation::solve(const Model& model, const Eigen::VectorXd& x, AssembledSums& sums,
+                             const Eigen::VectorXd& pull, Eigen::VectorXd& displacement) {
+    const auto solve_part = [&] {
+        for (std::size_t i = 0; i < value_.size(); ++i) matrix_[i] = sums.hessian[value_[i]];
         return cholesky_->factorize_and_solve(matrix_, pull, displacement);
     };
-    if (solve_part_of(sums_)) return true;
-    model.evaluate_fabric(x, Order::gauss_newton, gauss_newton_);
-    return solve_part_of(gauss_newton_);
+    if (solve_part()) return true;
+    model.evaluate_fabric(x, Order::gauss_newton, sums);
+    return solve_part();
 }
 
-void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
+void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x, AssembledSums& scratch) {
     constexpr int most_steps = 3;
     constexpr double shortest = 0.01;
     if (!cholesky_) return;
@@ -91,12 +91,12 @@ void FabricRelaxation::operator()(const Model& model, Eigen::VectorXd& x) {
     AssembledSums none;
     bool whole = false;
     for (int step = 0; step < most_steps && !whole; ++step) {
-        const double energy = model.evaluate_fabric(x, Order::hessian, sums_).total();
+        const double energy = model.evaluate_fabric(x, Order::hessian, scratch).total();
         if (!std::isfinite(energy)) return;
         Eigen::VectorXd gradient(count);
-        for (Eigen::Index i = 0; i < count; ++i) gradient[i] = sums_.gradient[unknowns_[i]];
+        for (Eigen::Index i = 0; i < count; ++i) gradient[i] = scratch.gradient[unknowns_[i]];
         Eigen::VectorXd direction;
-        if (!solve(model, x, -gradient, direction)) return;
+        if (!solve(model, x, scratch, -gradient, direction)) return;
         const double slope = gradient.dot(direction);
         if (!direction.allFinite() || !(slope < 0.0)) return;
         Eigen::VectorXd candidate = x;

@@ -22,18 +22,16 @@ class FabricRelaxation {
     FabricRelaxation(const Model& model, std::span<const char> held, std::span<const int> vertex_order);
 
     /// Moves x by a few Newton steps. `model` is the one given to the constructor or differs from it in the
-    /// material only.
-    void operator()(const Model& model, Eigen::VectorXd& x);
+    /// material only. What is in `scratch` is lost: its memory is as large as a solve of the sheet needs.
+    void operator()(const Model& model, Eigen::VectorXd& x, AssembledSums& scratch);
 
   private:
-    bool solve(const Model& model, const Eigen::VectorXd& x, const Eigen::VectorXd& pull,
+    bool solve(const Model& model, const Eigen::VectorXd& x, AssembledSums& sums, const Eigen::VectorXd& pull,
                Eigen::VectorXd& displacement);
 
     std::vector<int> unknowns_;  // of the model
     std::vector<int> value_;     // where each of the matrix's values stands in the model's Hessian
     std::optional<SparseCholesky> cholesky_;  // none without such fabric, or without plastic
-    AssembledSums sums_;
-    AssembledSums gauss_newton_;
     std::vector<double> matrix_;
 };
 

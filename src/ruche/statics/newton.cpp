@@ -270,7 +270,7 @@ Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     // over, and fabric everywhere only nearly as it would hang between the strips.
     relax_while(x, 1e-4);
     try {
-        FabricRelaxation(model(), held_, vertex_order_)(model(), x);
+        FabricRelaxation(model(), held_, vertex_order_)(model(), x, sums_);
     } catch (const std::bad_alloc&) {
         // It is not needed, and `run` says so when there is not enough memory for what is.
     }
