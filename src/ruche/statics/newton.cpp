@@ -266,8 +266,8 @@ std::string Newton::missing_memory() const {
 
 Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     Eigen::VectorXd x = transfer(start, model(), retraction_);
-    // Where the old mesh was too coarse, at corners of strips, small elements come out crushed or folded
-    // over, and fabric everywhere only nearly as it would hang between the strips.
+    // At corners of strips a small element may still come out crushed or folded over, and fabric everywhere
+    // is only nearly as it would hang between the strips.
     relax_while(x, 1e-4);
     try {
         FabricRelaxation(model(), held_, vertex_order_)(model(), x, sums_);
