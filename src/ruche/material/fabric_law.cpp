@@ -84,14 +84,13 @@ FabricResponse FabricLaw::operator()(const Vec3& e) const {
     const double log_j = 0.5 * std::log1p(2.0 * (e[0] + e[1]) + 4.0 * e[0] * e[1] - c12 * c12);
     const double invariant = 2.0 * (e[0] + e[1]);  // tr C - 2
     r.energy += share_ * (0.5 * mu_ * (invariant - 2.0 * log_j) + 0.5 * lambda_ * log_j * log_j);
-    // d ln J / dE_voigt = g / j2 with g = (c22, c11, -c12); its derivative needs dg/dE.
+    // d ln J / dE_voigt = g / j2 with g = (c22, c11, -c12); dg/dE has three entries.
     const Vec3 g(c22, c11, -c12);
     const Vec3 d_log_j = g / j2;
-    Mat3 dg;
-    dg << 0.0, 2.0, 0.0,  //
-        2.0, 0.0, 0.0,    //
-        0.0, 0.0, -1.0;
-    const Mat3 dd_log_j = dg / j2 - 2.0 * d_log_j * d_log_j.transpose();
+    Mat3 dd_log_j = -2.0 * d_log_j * d_log_j.transpose();
+    dd_log_j(0, 1) += 2.0 / j2;
+    dd_log_j(1, 0) += 2.0 / j2;
+    dd_log_j(2, 2) -= 1.0 / j2;
     const double slope = lambda_ * log_j - mu_;
     r.stress += share_ * (mu_ * Vec3(1.0, 1.0, 0.0) + slope * d_log_j);
     r.tangent += share_ * (slope * dd_log_j + lambda_ * d_log_j * d_log_j.transpose());

@@ -89,7 +89,8 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
         pattern.column_start().data(), pattern.row_index().data(), matrix_.data());
     Eigen::VectorXd rest = -at.sums.gradient;
     const double first = rest.norm();
-    const double enough = std::max(accuracy * first, 0.3 * tolerance);
+    const double enough = accuracy * first;
+    const double at_rest = 0.7 * tolerance;  // in every component; the rest is for what is not linear
     cholesky_.narrow();
     Eigen::VectorXd direction = cholesky_.solve(rest);
     double product = rest.dot(direction);
@@ -102,7 +103,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
         step += (product / curvature) * direction;
         rest -= (product / curvature) * pull;
         const double left = rest.norm();
-        if (left < enough) return true;
+        if (left < enough || rest.cwiseAbs().maxCoeff() < at_rest) return true;
         if (i == most_steps) return false;
         // By the plain norm a step along a soft direction seems to go wrong: what it leaves behind are small
         // errors of stiff elements.
