@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <numeric>
 
 #include "ruche/core/error.hpp"
 #include "ruche/energy/edge_roles.hpp"
 #include "ruche/energy/model_parts.hpp"
 #include "ruche/energy/rods.hpp"
+#include "ruche/geometry/mesh_order.hpp"
 
 namespace ruche {
 namespace {
@@ -16,36 +15,6 @@ namespace {
 std::array<Vec2, 3> layout_corners(const TriangleMesh& mesh, int t) {
     const Triangle& tri = mesh.triangles[t];
     return {mesh.vertices[tri[0]], mesh.vertices[tri[1]], mesh.vertices[tri[2]]};
-}
-
-/// Triangles in the order of a space-filling curve (Morton), so that neighbours in memory are neighbours in
-/// space whatever order the mesh came in.
-std::vector<int> spatial_order(const TriangleMesh& mesh) {
-    Vec2 low = Vec2::Constant(infinity);
-    Vec2 high = Vec2::Constant(-infinity);
-    for (const Vec2& p : mesh.vertices) {
-        low = low.cwiseMin(p);
-        high = high.cwiseMax(p);
-    }
-    const double cells = 65535.0 / std::max(1e-300, (high - low).maxCoeff());
-    const auto spread = [](std::uint32_t v) {
-        std::uint64_t s = v;
-        s = (s | (s << 8U)) & 0x00ff00ffU;
-        s = (s | (s << 4U)) & 0x0f0f0f0fU;
-        s = (s | (s << 2U)) & 0x33333333U;
-        return (s | (s << 1U)) & 0x55555555U;
-    };
-    std::vector<std::uint64_t> key(mesh.triangles.size());
-    for (int t = 0; t < mesh.triangle_count(); ++t) {
-        const auto p = layout_corners(mesh, t);
-        const Vec2 cell = ((p[0] + p[1] + p[2]) / 3.0 - low) * cells;
-        key[t] = spread(static_cast<std::uint32_t>(cell.x())) | spread(static_cast<std::uint32_t>(cell.y()))
-                                                                    << 1U;
-    }
-    std::vector<int> order(mesh.triangles.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
-    return order;
 }
 
 void check(const ModelInput& input) {
@@ -126,6 +95,7 @@ void Model::Parts::build_elastic_terms() {
     edge_unknowns = input.rods.empty() ? roles.unknowns : rods.unknowns;
     std::vector<FabricMembrane::Element> membranes;
     std::vector<LaminateTerm::Element> laminates;
+    // Neighbours in memory are neighbours in space, whatever order the mesh came in.
     for (const int t : spatial_order(mesh)) {
         const auto p = layout_corners(mesh, t);
         const std::array<Vec2, 3> relaxed = {relax * p[0], relax * p[1], relax * p[2]};

@@ -5,11 +5,11 @@
 
 #include "ruche/core/error.hpp"
 #include "ruche/geometry/border_graph.hpp"
+#include "ruche/geometry/mesh_order.hpp"
 #include "ruche/geometry/polyline.hpp"
 #include "ruche/meshing/branched_midlines.hpp"
 #include "ruche/meshing/centre_edges.hpp"
 #include "ruche/meshing/divide_triangles.hpp"
-#include "ruche/meshing/mesh_order.hpp"
 #include "ruche/meshing/point_locator.hpp"
 #include "ruche/meshing/print_mesh.hpp"
 #include "ruche/meshing/size_field.hpp"

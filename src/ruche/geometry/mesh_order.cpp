@@ -1,4 +1,4 @@
-#include "ruche/meshing/mesh_order.hpp"
+#include "ruche/geometry/mesh_order.hpp"
 
 #include <algorithm>
 #include <cstdint>
