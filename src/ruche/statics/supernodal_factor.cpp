@@ -315,18 +315,16 @@ Eigen::MatrixXd SupernodalFactor::solve(const Eigen::MatrixXd& b) const {
 void SupernodalFactor::narrow() {
     if (narrow_) return;
     narrow_ = true;
-    parallel_for(structure_.supernode_count(), [&](std::size_t s) {
-        // In place, so with a detour: a piece is read before anything is written where it was.
-        std::array<float, 256> rounded;
-        const std::size_t length = structure_.panel_start[s + 1] - structure_.panel_start[s];
-        double* const from = panel(static_cast<int>(s));
-        auto* const to = reinterpret_cast<std::byte*>(from);
-        for (std::size_t begin = 0; begin < length; begin += rounded.size()) {
-            const std::size_t count = std::min(rounded.size(), length - begin);
-            for (std::size_t k = 0; k < count; ++k) rounded[k] = static_cast<float>(from[begin + k]);
-            std::memcpy(to + begin * sizeof(float), rounded.data(), count * sizeof(float));
-        }
-    });
+    // In place, so with a detour: a piece is read before anything is written where it was.
+    std::array<float, 256> rounded;
+    const std::size_t length = structure_.value_count();
+    const double* const from = values_.get();
+    auto* const to = reinterpret_cast<std::byte*>(values_.get());
+    for (std::size_t begin = 0; begin < length; begin += rounded.size()) {
+        const std::size_t count = std::min(rounded.size(), length - begin);
+        for (std::size_t k = 0; k < count; ++k) rounded[k] = static_cast<float>(from[begin + k]);
+        std::memcpy(to + begin * sizeof(float), rounded.data(), count * sizeof(float));
+    }
 }
 
 }  // namespace ruche

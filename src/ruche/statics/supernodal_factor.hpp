@@ -78,7 +78,7 @@ class SupernodalFactor {
 
     SupernodalStructure structure_;
     std::unique_ptr<double[]> values_;  // all panels; none before the first factorisation
-    bool narrow_ = false;               // at the beginning of its place each panel is in single precision
+    bool narrow_ = false;               // the panels are in single precision, in half of the room
     std::vector<int> supernode_of_column_;
     std::vector<int> first_block_;
     std::vector<Block> blocks_;  // by supernode

@@ -2,6 +2,8 @@
 
 #include <cblas.h>
 
+#include <algorithm>
+
 #include "ruche/core/parallel.hpp"
 
 namespace ruche {
@@ -51,8 +53,22 @@ template <class Scalar>
 typename TriangularSolve<Scalar>::Panel TriangularSolve<Scalar>::panel(int s) const {
     const int columns = structure_.columns(s);
     const int stride = structure_.panel_rows(s);
-    return {reinterpret_cast<const Scalar*>(values_ + structure_.panel_start[s]), columns, stride,
+    return {reinterpret_cast<const Scalar*>(values_) + structure_.panel_start[s], columns, stride,
             stride - columns, structure_.panel_row(s) + columns};
+}
+
+/// Asks for the beginning of a panel, to be worked on next. Panels are too short for the processor to notice
+/// by itself that it reads on and on.
+template <class Scalar>
+void TriangularSolve<Scalar>::fetch(int s) const {
+    constexpr std::size_t most = 65'536;  // bytes
+    constexpr std::size_t line = 64;
+    if (s < 0 || s >= structure_.supernode_count()) return;
+    const Panel next = panel(s);
+    const std::size_t size = sizeof(Scalar) * next.columns * next.stride;
+    const char* const begin = reinterpret_cast<const char*>(next.values);
+    for (std::size_t at = 0; at < std::min(most, size); at += line) __builtin_prefetch(begin + at, 0, 2);
+    asm volatile("");  // GCC 12 drops calls of a function that does nothing but fetch
 }
 
 template <class Scalar>
@@ -115,6 +131,7 @@ void TriangularSolve<Scalar>::backward(int s, int worker) {
     const auto [values, columns, stride, below, rows] = panel(s);
     Matrix& gathered = gathered_[worker];
     gathered.resize(below, 1);
+    fetch(s - 1);
     for (Eigen::Index c = 0; c < y_.cols(); ++c) {
         Scalar* const own = y_.col(c).data() + structure_.first_column[s];
         for (int r = 0; r < below; ++r) gathered(r, 0) = y_(rows[r], c);
@@ -129,11 +146,17 @@ template <class Scalar>
 void TriangularSolve<Scalar>::forward() {
     parallel_for_workers(tree_.subtrees.size(), [&](std::size_t i, int worker) {
         const int subtree = static_cast<int>(i);
-        for (const int s : tree_.subtrees[i].supernodes) forward_in_subtree(subtree, s, worker);
+        for (const int s : tree_.subtrees[i].supernodes) {
+            fetch(s + 1);
+            forward_in_subtree(subtree, s, worker);
+        }
         leave_subtree(subtree, worker);
     });
     leave_subtrees();
-    for (const int s : tree_.top) forward_at_top(s);
+    for (const int s : tree_.top) {
+        fetch(s + 1);
+        forward_at_top(s);
+    }
 }
 
 template <class Scalar>

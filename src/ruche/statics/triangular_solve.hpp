@@ -16,8 +16,8 @@ namespace ruche {
 template <class Scalar>
 class TriangularSolve {
   public:
-    /// `values`: where the panels are, each beginning at its panel_start as counted in doubles. One column of
-    /// b per right-hand side. All of it but b has to stay.
+    /// `values`: where the panels are, numbers of type Scalar, each panel beginning at its panel_start. One
+    /// column of b per right-hand side. All of it but b has to stay.
     TriangularSolve(const SupernodalStructure& structure, const TreeSplit& tree, const double* values,
                     const Eigen::MatrixXd& b);
 
@@ -45,6 +45,7 @@ class TriangularSolve {
         const int* rows_below;
     };
     Panel panel(int s) const;
+    void fetch(int s) const;
     std::span<const int> rows_above(int subtree) const;
     void forward(int s, int last_inside, int worker);
     void backward(int s, int worker);
