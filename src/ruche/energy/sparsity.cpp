@@ -1,6 +1,7 @@
 #include "ruche/energy/sparsity.hpp"
 
 #include <algorithm>
+#include <type_traits>
 
 namespace ruche {
 
@@ -79,6 +80,40 @@ Eigen::SparseMatrix<double> NodePattern::full_matrix(std::span<const double> val
     Eigen::SparseMatrix<double> full = stored.selfadjointView<Eigen::Lower>();
     full.makeCompressed();
     return full;
+}
+
+Eigen::VectorXd NodePattern::product(std::span<const double> values, const Eigen::VectorXd& x) const {
+    Eigen::VectorXd y = Eigen::VectorXd::Zero(x.size());
+    const auto add_columns = [&]<int Size>(std::integral_constant<int, Size>, int node) {
+        const int first = first_unknown(node);
+        const int length = column_length(node);
+        const int* const row = row_index_.data() + column_start_[first];
+        const double* const column = values.data() + column_start_[first];
+        std::array<double, Size> own;
+        std::array<double, Size> sum{};
+        for (int c = 0; c < Size; ++c) own[c] = x[first + c];
+        for (int c = 0; c < Size; ++c) {
+            sum[c] += column[c + c * length] * own[c];
+            for (int r = c + 1; r < Size; ++r) {
+                sum[c] += column[r + c * length] * own[r];
+                sum[r] += column[r + c * length] * own[c];
+            }
+        }
+        for (int k = Size; k < length; ++k) {
+            const double other = x[row[k]];
+            double pull = 0.0;
+            for (int c = 0; c < Size; ++c) {
+                pull += column[k + c * length] * own[c];
+                sum[c] += column[k + c * length] * other;
+            }
+            y[row[k]] += pull;
+        }
+        for (int c = 0; c < Size; ++c) y[first + c] += sum[c];
+    };
+    for (int node = 0; node < vertex_count_; ++node) add_columns(std::integral_constant<int, 3>(), node);
+    for (int node = vertex_count_; node < node_count(); ++node)
+        add_columns(std::integral_constant<int, 1>(), node);
+    return y;
 }
 
 }  // namespace ruche

@@ -50,6 +50,9 @@ class NodePattern {
     /// The full symmetric matrix from values of this pattern.
     Eigen::SparseMatrix<double> full_matrix(std::span<const double> values) const;
 
+    /// The product of that matrix and a vector, in one pass over the values.
+    Eigen::VectorXd product(std::span<const double> values, const Eigen::VectorXd& x) const;
+
   private:
     int vertex_count_ = 0;
     std::vector<int> row_start_, row_nodes_;  // node graph, lower triangle, by column node

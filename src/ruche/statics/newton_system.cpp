@@ -1,6 +1,5 @@
 #include "ruche/statics/newton_system.hpp"
 
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -83,10 +82,6 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     constexpr int most_steps = 8;      // a solve costs about a tenth of a factorisation
     constexpr double hopeful = 0.7;    // by which each step has to lower the residual as the factor weighs it
     build_matrix(at, Order::hessian, 0.0);
-    const NodePattern& pattern = at.model.pattern();
-    const Eigen::Map<const Eigen::SparseMatrix<double>> matrix(
-        at.model.size(), at.model.size(), static_cast<Eigen::Index>(matrix_.size()),
-        pattern.column_start().data(), pattern.row_index().data(), matrix_.data());
     Eigen::VectorXd rest = -at.sums.gradient;
     const double first = rest.norm();
     const double enough = accuracy * first;
@@ -97,7 +92,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     const double first_product = product;
     step.setZero(at.model.size());
     for (int i = 1;; ++i) {
-        const Eigen::VectorXd pull = matrix.selfadjointView<Eigen::Lower>() * direction;
+        const Eigen::VectorXd pull = at.model.pattern().product(matrix_, direction);
         const double curvature = direction.dot(pull);
         if (!(curvature > 0.0)) return false;
         step += (product / curvature) * direction;

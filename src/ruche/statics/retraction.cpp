@@ -45,18 +45,27 @@ ElementStep element_step(const Edges& d, const Edges& dd) {
     return step;
 }
 
+/// The square root of 1 + 2 t eps: squared lengths stay linear in t. Limits tame elements that a step would
+/// crush or tear.
+Mat2 stretch(const Mat2& strain, double t) {
+    constexpr double least = 0.5;
+    constexpr double most = 1.6;
+    const Mat2 squared = Mat2::Identity() + 2.0 * t * strain;
+    const double mean = 0.5 * squared.trace();
+    const double radius = std::hypot(0.5 * (squared(0, 0) - squared(1, 1)), squared(0, 1));
+    if (mean - radius > least * least && mean + radius < most * most) {
+        const double area = std::sqrt(squared.determinant());
+        return (squared + area * Mat2::Identity()) / std::sqrt(2.0 * (mean + area));  // by Cayley-Hamilton
+    }
+    Eigen::SelfAdjointEigenSolver<Mat2> eigen;
+    eigen.computeDirect(squared);
+    const Vec2 stretches = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().cwiseMax(least).cwiseMin(most);
+    return eigen.eigenvectors() * stretches.asDiagonal() * eigen.eigenvectors().transpose();
+}
+
 /// D(t) - D.
 Edges edge_change(const Edges& d, const ElementStep& step, double t) {
-    // Squared lengths stay linear in t; the floor and the limits tame elements that a step would crush or
-    // tear.
-    Eigen::SelfAdjointEigenSolver<Mat2> eigen;
-    eigen.computeDirect(step.strain);
-    Vec2 stretch;
-    for (int i = 0; i < 2; ++i) {
-        stretch[i] = std::clamp(std::sqrt(std::max(0.05, 1.0 + 2.0 * t * eigen.eigenvalues()[i])), 0.5, 1.6);
-    }
-    const Mat2 s = eigen.eigenvectors() * stretch.asDiagonal() * eigen.eigenvectors().transpose();
-    const Edges strained = step.tangent * (s * (step.tangent.transpose() * d));
+    const Edges strained = step.tangent * (stretch(step.strain, t) * (step.tangent.transpose() * d));
     const double angle = t * step.spin.norm();
     if (angle == 0.0) return strained - d;
     const Eigen::AngleAxisd rotation(angle, step.spin.normalized());

@@ -143,8 +143,8 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
     const TriangleMesh& mesh = to.input().mesh;
     const std::array<double, 2>& prestretch = to.input().prestretch;
     const double shortest = open_enough / std::max(prestretch[0], prestretch[1]);
-    Eigen::VectorXd x = Eigen::VectorXd::Zero(to.size());
     std::vector<Gradient> wanted(mesh.triangles.size());
+    std::vector<Vec3> place(mesh.triangles.size(), Vec3::Zero());
     constexpr int chunk = 256;
     parallel_for((mesh.triangles.size() + chunk - 1) / chunk, [&](std::size_t block) {
         const int end = std::min(mesh.triangle_count(), static_cast<int>(block + 1) * chunk);
@@ -153,8 +153,11 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
             const Vec2 centre = (mesh.vertices[v[0]] + mesh.vertices[v[1]] + mesh.vertices[v[2]]) / 3.0;
             const MeshPoint point = source.find(centre, to.input().print[t].bare());
             Mat3 blend = Mat3::Zero();
-            for (int i = 0; i < 3; ++i)
-                blend += point.weights[i] * rotations[old.triangles[point.triangle][i]];
+            for (int i = 0; i < 3; ++i) {
+                const int corner = old.triangles[point.triangle][i];
+                blend += point.weights[i] * rotations[corner];
+                place[t] += point.weights[i] * from.x.segment<3>(3 * static_cast<Eigen::Index>(corner));
+            }
             const Mat3 rotation = nearest_rotation(blend);
             Mat2 stretch = mean_stretch(point);
             if (to.input().print[t].bare()) stretch = opened(stretch, shortest);
@@ -162,13 +165,9 @@ Eigen::VectorXd transfer(const LayoutShape& from, const Model& to, Retraction& r
         }
     });
     // A first guess in the right place; its own edges do not matter.
-    for (int v = 0; v < mesh.vertex_count(); ++v) {
-        const MeshPoint point = source.find(mesh.vertices[v], true);
-        for (int i = 0; i < 3; ++i) {
-            const int corner = old.triangles[point.triangle][i];
-            x.segment<3>(3 * static_cast<Eigen::Index>(v)) +=
-                point.weights[i] * from.x.segment<3>(3 * static_cast<Eigen::Index>(corner));
-        }
+    Eigen::VectorXd x = to.initial();
+    for (int t = 0; t < mesh.triangle_count(); ++t) {
+        for (const int v : mesh.triangles[t]) x.segment<3>(3 * static_cast<Eigen::Index>(v)) = place[t];
     }
     return retraction.with_edges(x, wanted);
 }

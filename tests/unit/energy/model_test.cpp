@@ -350,6 +350,19 @@ TEST_CASE("model: hopeless states are not finite or large, at every order, and n
     }
 }
 
+TEST_CASE("model: the pattern multiplies the Hessian by a vector as its full matrix does") {
+    for (const SetUp& set_up : set_ups()) {
+        CAPTURE(set_up.name);
+        const Model model(set_up.input);
+        AssembledSums sums;
+        model.evaluate(rolled(model, {}), Order::hessian, sums);
+        const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -1.0, 2.0);
+        const Eigen::VectorXd expected = model.pattern().full_matrix(sums.hessian) * x;
+        const Eigen::VectorXd product = model.pattern().product(sums.hessian, x);
+        CHECK((product - expected).cwiseAbs().maxCoeff() < 1e-13 * expected.cwiseAbs().maxCoeff());
+    }
+}
+
 TEST_CASE("model: a patch has the derivatives of the whole sheet and the differences of its energy") {
     for (const SetUp& set_up : set_ups()) {
         CAPTURE(set_up.name);
