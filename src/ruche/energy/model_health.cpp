@@ -39,11 +39,14 @@ void for_each_strain_margin(const FabricMembrane& membrane, const LaminateTerm& 
     }
 }
 
+/// Whether fabric with this margin is in the linear extension of its law.
+bool is_beyond_law(double margin, const ModelOptions& options) { return margin > -options.log_extension; }
+
 }  // namespace
 
 int Model::elements_beyond_law(const Eigen::VectorXd& x) const {
     int count = 0;
-    const auto look = [&](double margin) { count += margin > -parts_->input.options.log_extension ? 1 : 0; };
+    const auto look = [&](double margin) { count += is_beyond_law(margin, parts_->input.options) ? 1 : 0; };
     for_each_strain_margin(parts_->membrane->term(), parts_->laminate->term(), parts_->unknowns(x), look);
     return count;
 }
@@ -57,8 +60,8 @@ Health Model::health(const Eigen::VectorXd& x) const {
     const LaminateTerm& laminate = parts_->laminate->term();
     for_each_strain_margin(parts_->membrane->term(), laminate, unknowns, [&](double margin) {
         health.max_strain_margin = std::max(health.max_strain_margin, margin);
+        health.beyond_law += is_beyond_law(margin, parts_->input.options) ? 1 : 0;
     });
-    health.beyond_law = elements_beyond_law(x);
     const double relaxed_share = 1.0 / (parts_->input.prestretch[0] * parts_->input.prestretch[1]);
     std::vector<Vec3> normals(mesh.triangles.size());
     for (int t = 0; t < mesh.triangle_count(); ++t) {

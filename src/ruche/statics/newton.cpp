@@ -54,6 +54,17 @@ EnergyTerms Newton::evaluate(const Eigen::VectorXd& x, Order order, AssembledSum
     return terms;
 }
 
+/// At the present state, unless the line search has done so already.
+void Newton::evaluate(Order order) {
+    if (order == Order::hessian && trial_at_.size() > 0 && trial_at_ == x_) {
+        std::swap(sums_, trial_);
+        terms_ = trial_terms_;
+    } else {
+        terms_ = evaluate(x_, order, sums_);
+    }
+    trial_at_.resize(0);
+}
+
 double Newton::energy_scale() const {
     return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
            std::abs(terms_.gravity) + std::abs(terms_.contact);
@@ -74,6 +85,7 @@ bool Newton::narrow_extension() {
         return false;
     }
     own_.emplace(model().with_log_extension(narrow));
+    trial_at_.resize(0);
     relax_while(x_, 1e-9);
     return true;
 }
@@ -90,12 +102,15 @@ ClearPath Newton::follow(const Eigen::VectorXd& direction, double length) {
 /// Before an energy at `x` is asked for: the model must know what touches there, and still at the present
 /// state.
 void Newton::cover_contacts(const Eigen::VectorXd& x) {
-    if (contact_ && contact_->cover(*own_, x_, x)) system_.change_pattern();
+    if (!contact_ || !contact_->cover(*own_, x_, x)) return;
+    system_.change_pattern();
+    trial_at_.resize(0);
 }
 
 /// Armijo's rule along the retraction; false when no step of reasonable length lowers energy or residual.
-/// `trial_` then has the gradient where it ended.
-bool Newton::line_search() {
+/// `trial_` then has the gradient where it ended, and the Hessian too if that is `wanted_next` and the whole
+/// step was taken.
+bool Newton::line_search(Order wanted_next) {
     const double energy = terms_.total();
     const double slope = sums_.gradient.dot(step_);
     const double before = residual();
@@ -111,8 +126,9 @@ bool Newton::line_search() {
         if (halving < wary_halvings && !may_take(candidate)) continue;
         // The first candidate is taken nearly always, and what comes after a step wants the gradient.
         const bool with_gradient = halving == 0 || std::abs(slope) < 1e-9 * energy_scale();
-        double trial =
-            with_gradient ? evaluate(candidate, Order::gradient, trial_).total() : model().energy(candidate);
+        const Order order = halving == 0 ? wanted_next : Order::gradient;
+        if (with_gradient) trial_terms_ = evaluate(candidate, order, trial_);
+        double trial = with_gradient ? trial_terms_.total() : model().energy(candidate);
         const auto is_lower = [&] { return std::isfinite(trial) && trial <= energy + 1e-4 * t * slope; };
         bool lower = is_lower();
         if (std::abs(slope) < 1e-9 * energy_scale()) {
@@ -120,6 +136,7 @@ bool Newton::line_search() {
             lower |= std::isfinite(trial) && largest(trial_) < before;
             if (!lower && std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
         }
+        if (lower && order == Order::hessian) trial_at_ = candidate;
         if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
             // A few spots that it has thrown far off must not shorten the step of the whole sheet.
             trial -= elimination_.after_step(model(), x_, before, candidate, trial_.gradient);
@@ -143,6 +160,7 @@ void Newton::relax_spots() {
     const int rings = rotation_ <= turning ? 1 : 0;
     for (int sweep = 0; sweep < most_sweeps && largest(trial_) > converging * residual(); ++sweep) {
         const Eigen::VectorXd from = x_;
+        trial_at_.resize(0);
         elimination_(model(), x_, trial_.gradient, rings);
         // It knows neither of tangles nor of obstacles that are not near already.
         if ((!may_take(x_) && is_good(from)) || (contact_ && !contact_->clear(from, x_))) {
@@ -162,7 +180,7 @@ void Newton::smooth() {
     step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, smoothing_sweeps);
     rotation_ = retraction_.rms_rotation(x_, step_);
     // Where no part of it lowers the energy, Newton's method goes on from here as well.
-    if (rotation_ > 0.0 && step_.allFinite()) (void)line_search();
+    if (rotation_ > 0.0 && step_.allFinite()) (void)line_search(Order::hessian);
     rotation_ = turned;
 }
 
@@ -342,7 +360,7 @@ bool Newton::step(Order order) {
     if (!solved) return false;
     spins_ = retraction_.spins(x_, step_);
     rotation_ = retraction_.rms_rotation(spins_);
-    const bool moved = line_search();
+    const bool moved = line_search(exact && rotation_ < nearly_at_rest ? Order::hessian : Order::gradient);
     if (exact) system_.adapt(halved_);
     return moved;
 }
@@ -363,7 +381,7 @@ void Newton::iterate(Equilibrium& result) {
         evaluate(order);
         if (residual() <= tolerance && narrow_extension()) evaluate(order);
         report();
-        if (is_good(x_)) last_good_ = x_;
+        if (rotation_ > nearly_at_rest && is_good(x_)) last_good_ = x_;
         result.residual = residual();
         residuals_.push_back(result.residual);
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {

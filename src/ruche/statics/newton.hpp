@@ -51,14 +51,15 @@ class Newton {
     /// rms rotation of a step, rad: above it the sheet is "turning" and the Gauss-Newton form is the better
     /// model.
     static constexpr double turning = 0.05;
-    static constexpr double wary_turn = 0.3;  // rad, rms: how far a wary step may turn the sheet
+    static constexpr double wary_turn = 0.3;          // rad, rms: how far a wary step may turn the sheet
+    static constexpr double nearly_at_rest = 0.0015;  // rad, rms: such steps and those after are whole ones
 
     Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
            const Control& control, const std::vector<int>& vertex_order);
     const Model& model() const { return own_ ? *own_ : *original_; }
     NewtonPoint here() const { return {model(), x_, sums_}; }
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
-    void evaluate(Order order) { terms_ = evaluate(x_, order, sums_); }
+    void evaluate(Order order);
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     double energy_scale() const;
     bool is_good(const Eigen::VectorXd& x) const;
@@ -71,7 +72,7 @@ class Newton {
     bool narrow_extension();
     ClearPath follow(const Eigen::VectorXd& direction, double length);
     void cover_contacts(const Eigen::VectorXd& x);
-    bool line_search();
+    bool line_search(Order wanted_next);
     void relax_spots();
     void settle_places();
     void smooth();
@@ -96,6 +97,8 @@ class Newton {
     Eigen::VectorXd step_;
     AssembledSums sums_;
     AssembledSums trial_;
+    EnergyTerms trial_terms_;
+    Eigen::VectorXd trial_at_;  // where `trial_` has the Hessian; empty when it has none
     EnergyTerms terms_;
     bool halved_ = false;         // the last line search had to
     std::vector<Vec3> spins_;     // of the triangles in the last step

@@ -100,25 +100,31 @@ void SupernodalFactor::list_blocks(const SymmetricPattern& pattern, std::span<co
     });
     std::partial_sum(first_block_.begin(), first_block_.end(), first_block_.begin());
     blocks_.resize(first_block_.back());
+    std::vector<int> column_of_block(blocks_.size());
     std::vector<int> next(first_block_.begin(), first_block_.end() - 1);
     for_each_block([&](int node, int source, int row, int rows) {
         const int unknown = first_unknown[node];
         const int column = eliminated_at[unknown];
-        const int s = supernode_of_column_[std::min(row, column)];
-        const int* panel_rows = structure_.panel_row(s);
-        const int stride = structure_.panel_rows(s);
-        const auto below =
-            std::lower_bound(panel_rows, panel_rows + stride, std::max(row, column)) - panel_rows;
-        const int across = std::min(row, column) - structure_.first_column[s];
-        blocks_[next[s]++] = {
+        const int block = next[supernode_of_column_[std::min(row, column)]]++;
+        column_of_block[block] = std::min(row, column);
+        blocks_[block] = {
             .source = source,
             .source_stride = pattern.column_start[unknown + 1] - pattern.column_start[unknown],
-            .target = static_cast<int>(below) + across * stride,
+            .target = std::max(row, column),  // its row, so far
             .rows = static_cast<short>(rows),
             .columns = static_cast<short>(node_sizes[node]),
             .transposed = row < column,
         };
     });
+    std::vector<int> position(size);  // of each row in the panel of a supernode that has it
+    for (int s = 0; s < structure_.supernode_count(); ++s) {
+        const int stride = structure_.panel_rows(s);
+        for (int i = 0; i < stride; ++i) position[structure_.panel_row(s)[i]] = i;
+        for (int b = first_block_[s]; b < first_block_[s + 1]; ++b) {
+            const int across = column_of_block[b] - structure_.first_column[s];
+            blocks_[b].target = position[blocks_[b].target] + across * stride;
+        }
+    }
 }
 
 void SupernodalFactor::list_updates() {
