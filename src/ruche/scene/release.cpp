@@ -26,9 +26,9 @@ SolveOptions as_a_start(const Scene& scene) {
     return options;
 }
 
-/// Meshes of the same pattern, finest first, each with elements three times as long as the one before (twice
-/// where that is very fine or meshes are nested) as far as that saves enough triangles to be worth a level.
-/// None where something else than the sheet's own forces acts.
+/// Meshes of the same pattern, finest first, each with elements three times as long as the one before (2.5
+/// times where that is very fine, twice where meshes are nested) as far as that saves enough triangles to be
+/// worth a level. None where something else than the sheet's own forces acts.
 std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& finest) {
     constexpr int small = 1500;    // triangles: solved faster than coarsened
     constexpr double worth = 0.4;  // of the triangles of the level above, at most
@@ -46,7 +46,7 @@ std::vector<PrintMesh> coarser_layouts(const Scene& scene, const PrintMesh& fine
         if (options.subdivisions > 0) {
             --options.subdivisions;
         } else {
-            const double coarsening = count > very_fine ? 2.0 : 3.0;
+            const double coarsening = count > very_fine ? 2.5 : 3.0;
             options.size_mm *= coarsening;
             options.fabric_size_mm *= coarsening;
             options.elements_across = std::max(0.5, options.elements_across / coarsening);
