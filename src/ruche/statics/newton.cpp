@@ -179,8 +179,9 @@ void Newton::smooth() {
     evaluate(Order::hessian);
     step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, smoothing_sweeps);
     rotation_ = retraction_.rms_rotation(x_, step_);
-    // Where no part of it lowers the energy, Newton's method goes on from here as well.
-    if (rotation_ > 0.0 && step_.allFinite()) (void)line_search(Order::hessian);
+    // What turns the sheet is no short wave. Where no part of it lowers the energy, Newton's method goes on
+    // from here as well.
+    if (rotation_ > 0.0 && rotation_ <= turning && step_.allFinite()) (void)line_search(Order::hessian);
     rotation_ = turned;
 }
 

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double first_share = 0.1;
 // A sheet that has just come to rest still has the noise of the turn in it: smaller shares are seldom enough.
-// Where this is not either, all of it comes next.
+// Where this is enough, the noise is gone with that step; where it is not, all of it comes next and less
+// after.
 constexpr double share_after_turning = 0.3;
 constexpr double least_share = 0.005;  // below it none
 constexpr double share_grows = 4.0;
@@ -69,7 +70,7 @@ void NewtonSystem::adapt(bool halved) {
     if (halved) {
         share_ = std::clamp(share_grows * share_, 0.5 * first_share, 1.0);
     } else {
-        share_ = after_gauss_newton_ ? 0.0 : share_ / share_falls;
+        share_ = after_gauss_newton_ && share_ < 1.0 ? 0.0 : share_ / share_falls;
         if (share_ < least_share) share_ = 0.0;
     }
     after_gauss_newton_ = false;
