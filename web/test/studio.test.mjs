@@ -29,7 +29,7 @@ async function fresh(t) {
 
 async function open(address, options = {}) {
     const context = await browser.newContext({ viewport: desktop, acceptDownloads: true, ...options });
-    context.setDefaultTimeout(600000);
+    context.setDefaultTimeout(300000);  // before the test's own time is over: that would not say where it stands
     const page = await context.newPage();
     page.troubles = [];
     page.on("console", (message) => {
