@@ -361,7 +361,8 @@ bool Newton::step(Order order) {
     if (!solved) return false;
     spins_ = retraction_.spins(x_, step_);
     rotation_ = retraction_.rms_rotation(spins_);
-    const bool moved = line_search(exact && rotation_ < nearly_at_rest ? Order::hessian : Order::gradient);
+    const bool moved =
+        line_search(exact && rotation_ < NewtonSystem::nearly_at_rest ? Order::hessian : Order::gradient);
     if (exact) system_.adapt(halved_);
     return moved;
 }
@@ -382,7 +383,8 @@ void Newton::iterate(Equilibrium& result) {
         evaluate(order);
         if (residual() <= tolerance && narrow_extension()) evaluate(order);
         report();
-        if (rotation_ > nearly_at_rest && is_good(x_)) last_good_ = x_;
+        // As dear as an energy, and the last steps hardly change the shape.
+        if (rotation_ > NewtonSystem::nearly_at_rest && is_good(x_)) last_good_ = x_;
         result.residual = residual();
         residuals_.push_back(result.residual);
         if (!std::isfinite(terms_.total()) || !std::isfinite(result.residual)) {

@@ -51,8 +51,7 @@ class Newton {
     /// rms rotation of a step, rad: above it the sheet is "turning" and the Gauss-Newton form is the better
     /// model.
     static constexpr double turning = 0.05;
-    static constexpr double wary_turn = 0.3;          // rad, rms: how far a wary step may turn the sheet
-    static constexpr double nearly_at_rest = 0.0015;  // rad, rms: such steps and those after are whole ones
+    static constexpr double wary_turn = 0.3;  // rad, rms: how far a wary step may turn the sheet
 
     Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
            const Control& control, const std::vector<int>& vertex_order);

@@ -113,8 +113,8 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
 
 bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tolerance,
                               Eigen::VectorXd& step) {
-    constexpr double near = 0.0015;  // rad: later steps are solved in a few iterations, earlier ones seldom
-    if (factor_is_near_ && rotation < near && solve_with_last_factor(at, tolerance, step)) return true;
+    if (factor_is_near_ && rotation < nearly_at_rest && solve_with_last_factor(at, tolerance, step))
+        return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
         bool ready = factorize(at, Order::hessian, 0.0, &step);

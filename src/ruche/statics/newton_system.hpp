@@ -20,6 +20,10 @@ struct NewtonPoint {
 /// again only when contacts change it.
 class NewtonSystem {
   public:
+    /// rms rotation of a step, rad: those that come after a shorter one are solved with the last factor in a
+    /// few iterations, others seldom.
+    static constexpr double nearly_at_rest = 0.0015;
+
     /// `held`: one flag per unknown that does not move; it has to stay. `loaded`: supports or forces hold the
     /// sheet. `vertex_order`: see sparse_cholesky.hpp.
     NewtonSystem(const Model& model, const std::vector<char>& held, bool loaded,

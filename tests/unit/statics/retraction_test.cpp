@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "energy/samples.hpp"
@@ -51,6 +52,35 @@ TEST_CASE("retraction: a rigid turn of the whole sheet stays rigid, however far"
               doctest::Approx(before).epsilon(1e-10));
     }
     CHECK(model.energy(turned) == doctest::Approx(model.energy(x)).epsilon(1e-10));
+}
+
+TEST_CASE("retraction: squared lengths are linear along a step, between half and 1.6 times what they were") {
+    const Model model(patchwork());
+    Retraction retraction(model);
+    const Eigen::VectorXd x = model.initial();
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(model.size());
+    for (int v = 0; v < model.vertex_count(); ++v)
+        step.segment<3>(3 * v) = Vec3(0.5 * x[3 * v] + 0.2 * x[3 * v + 1], 0.2 * x[3 * v], 0.0);
+    // Principal strains and axes of the step's gradient, which is the same everywhere.
+    const double root = std::hypot(0.25, 0.2);
+    const double strains[] = {0.25 + root, 0.25 - root};
+    const double angle = 0.5 * std::atan2(0.4, 0.5);
+    const Vec3 axes[] = {Vec3(std::cos(angle), std::sin(angle), 0.0),
+                         Vec3(-std::sin(angle), std::cos(angle), 0.0)};
+    for (const double t : {0.3, 0.9, 2.0, -0.4, -0.7}) {
+        CAPTURE(t);
+        const Eigen::VectorXd stretched = retraction(x, step, t);
+        for (int v = 1; v < model.vertex_count(); ++v) {
+            const Vec3 before = x.segment<3>(3 * v) - x.segment<3>(0);
+            Vec3 expected = Vec3::Zero();
+            for (const int i : {0, 1}) {
+                const double squared = std::clamp(1.0 + 2.0 * t * strains[i], 0.25, 2.56);
+                expected += std::sqrt(squared) * axes[i].dot(before) * axes[i];
+            }
+            CHECK((stretched.segment<3>(3 * v) - stretched.segment<3>(0) - expected).norm() <
+                  1e-11 * before.norm());
+        }
+    }
 }
 
 TEST_CASE("retraction: what is held stays, and what is taken elsewhere gets there") {
