@@ -10,6 +10,8 @@ import time
 
 import pytest
 
+from metis_watch import wait_until_metis_orders
+
 PROGRAM = os.environ["RUCHE_PROGRAM"]
 DRAWING = """<svg xmlns="http://www.w3.org/2000/svg" width="20mm" height="10mm" viewBox="0 0 20 10">
 <path id="strip" d="M 4 5 H 16" stroke="black" stroke-width="1" fill="none"/></svg>"""
@@ -262,6 +264,16 @@ def test_an_interrupted_run_does_not_replace_a_finished_result(folder):
     assert process.returncode == 130
     assert (folder / "k.out/report.json").read_text() == '{"status": "converged"}'
     assert {path.name for path in (folder / "k.out").iterdir()} == {"report.json", "state.ruche"}
+
+
+def test_an_interrupt_while_metis_orders_is_one_like_any_other(folder):
+    process = big_run(folder)
+    wait_until_metis_orders(process.pid)
+    process.send_signal(signal.SIGTERM)
+    out, error = process.communicate(timeout=600)
+    assert process.returncode == 130, error
+    assert "interrupted" in out
+    assert report(folder / "k.out")["status"] == "interrupted"
 
 
 def test_a_second_interrupt_ends_the_program_at_once(folder):

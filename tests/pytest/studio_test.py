@@ -15,6 +15,7 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "fuzz"))
 import studio_fuzz  # noqa: E402
+from metis_watch import wait_until_metis_orders  # noqa: E402
 from studio_fuzz import DRAWING, SECRET  # noqa: E402
 
 PROGRAM = os.environ["RUCHE_PROGRAM"]
@@ -322,6 +323,7 @@ def test_a_stopped_server_keeps_what_is_done_and_how_far_the_rest_got(studio):
     radial = {"base": {"generator": "radial"}, "values": {"mesh.size_mm": 0.15, "output.picture": False}}
     _, second = studio.post("/api/release", radial)
     studio.moving(second["id"])
+    wait_until_metis_orders(studio.process.pid)
     assert studio.close() == 0
     assert (studio.folder / "d.out/report.json").read_bytes() == finished
     assert json.loads((studio.folder / "radial.out/report.json").read_text())["status"] == "interrupted"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "ruche/cli/interrupt.hpp"
 #include "ruche/cli/verbs.hpp"
 #include "ruche/core/error.hpp"
 #include "ruche/core/suggest.hpp"
@@ -98,12 +99,19 @@ int run_and_report(int count, char** arguments) {
 }  // namespace
 
 int main(int count, char** arguments) {
-    const int status = run_and_report(count, arguments);
-#ifndef __SANITIZE_ADDRESS__
-    // Without the libraries' farewells: where memory is limited a thread of OpenBLAS may still be waiting for
-    // its share, and OpenBLAS would wait for that thread.
-    std::fflush(nullptr);
-    std::_Exit(status);
+    try {
+        ruche::run_beside_signals([count, arguments] {
+            const int status = run_and_report(count, arguments);
+#ifdef __SANITIZE_ADDRESS__
+            std::exit(status);  // looks for leaks
+#else
+            // Without the libraries' farewells: where memory is limited a thread of OpenBLAS may still be
+            // waiting for its share, and OpenBLAS would wait for that thread.
+            std::fflush(nullptr);
+            std::_Exit(status);
 #endif
-    return status;
+        });
+    } catch (const std::exception& error) {
+        return failure(error.what());
+    }
 }

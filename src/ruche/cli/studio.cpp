@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -36,8 +37,15 @@ static void open_browser(const std::string& address) {
     std::string program = "xdg-open";
     std::string argument = address;
     char* const arguments[] = {program.data(), argument.data(), nullptr};
+    sigset_t none;  // the signals that this program's threads leave to its first one
+    sigemptyset(&none);
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setsigmask(&attributes, &none);
     pid_t child = 0;
-    posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+    posix_spawnp(&child, program.c_str(), nullptr, &attributes, arguments, environ);
+    posix_spawnattr_destroy(&attributes);
 }
 
 static ExitCode run(const StudioArguments& arguments) {

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <new>
 #include <numeric>
+#include <stdexcept>
 
 #include "ruche/core/memory.hpp"
 #include "ruche/core/parallel.hpp"
@@ -98,10 +99,10 @@ std::vector<int> nested_dissection(std::span<const int> start, std::span<const i
     // METIS draws from one sequence of random numbers per process: two at a time would change each other's.
     static std::mutex one_at_a_time;
     const std::scoped_lock lock(one_at_a_time);
-    if (METIS_NodeND(&count, xadj.data(), adjncy.data(), nullptr, options, order.data(), position.data()) !=
-        METIS_OK) {
-        throw std::bad_alloc();
-    }
+    const int outcome =
+        METIS_NodeND(&count, xadj.data(), adjncy.data(), nullptr, options, order.data(), position.data());
+    if (outcome == METIS_ERROR_MEMORY) throw std::bad_alloc();
+    if (outcome != METIS_OK) throw std::runtime_error("METIS found no elimination order");
     return order;
 }
 
