@@ -76,11 +76,13 @@ void NewtonSystem::adapt(bool halved) {
     after_gauss_newton_ = false;
 }
 
-/// The exact step to a part in a thousand, or to what `tolerance` asks for. False when that would take long
-/// or the Hessian is not positive definite.
+/// The exact step to a part in a thousand, or to what `tolerance` asks for; where that would take long, what
+/// is reached then, and the factor is not near any more. False when that is little or the Hessian is not
+/// positive definite.
 bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step) {
     constexpr double accuracy = 1e-3;  // of the residual
     constexpr int most_steps = 8;      // a solve costs about a tenth of a factorisation
+    constexpr double useful = 0.05;    // of the residual: the next step has as much to do with the exact one
     constexpr double hopeful = 0.7;    // by which each step has to lower the residual as the factor weighs it
     build_matrix(at, Order::hessian, 0.0);
     Eigen::VectorXd rest = -at.sums.gradient;
@@ -100,7 +102,10 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
         rest -= (product / curvature) * pull;
         const double left = rest.norm();
         if (left < enough || rest.cwiseAbs().maxCoeff() < at_rest) return true;
-        if (i == most_steps) return false;
+        if (i == most_steps) {
+            factor_is_near_ = false;
+            return left < useful * first;
+        }
         // By the plain norm a step along a soft direction seems to go wrong: what it leaves behind are small
         // errors of stiff elements.
         const Eigen::VectorXd next = cholesky_.solve(rest);
