@@ -65,6 +65,15 @@ void Newton::evaluate(Order order) {
     trial_at_.resize(0);
 }
 
+/// For the next `evaluate`: what the last one found holds for the present state as well. Not with contact,
+/// which may have changed the pattern since.
+void Newton::keep_evaluation() {
+    if (contact_) return;
+    std::swap(sums_, trial_);
+    trial_terms_ = terms_;
+    trial_at_ = x_;
+}
+
 double Newton::energy_scale() const {
     return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
            std::abs(terms_.gravity) + std::abs(terms_.contact);
@@ -173,7 +182,7 @@ void Newton::relax_spots() {
 
 /// Takes short waves out before the first exact Hessian: the compression that the Gauss-Newton form leaves
 /// behind in single elements makes that one indefinite, or so nearly so that its step is lost along soft
-/// shapes.
+/// shapes. Where no step takes them out, one is expected that is.
 void Newton::smooth() {
     const double turned = rotation_;
     evaluate(Order::hessian);
@@ -181,7 +190,11 @@ void Newton::smooth() {
     rotation_ = retraction_.rms_rotation(x_, step_);
     // What turns the sheet is no short wave. Where no part of it lowers the energy, Newton's method goes on
     // from here as well.
-    if (rotation_ > 0.0 && rotation_ <= turning && step_.allFinite()) (void)line_search(Order::hessian);
+    const bool short_waves = rotation_ > 0.0 && rotation_ <= turning && step_.allFinite();
+    if (!short_waves || !line_search(Order::hessian)) {
+        system_.expect_indefinite();
+        keep_evaluation();
+    }
     rotation_ = turned;
 }
 

@@ -59,6 +59,7 @@ class Newton {
     NewtonPoint here() const { return {model(), x_, sums_}; }
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
     void evaluate(Order order);
+    void keep_evaluation();
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     double energy_scale() const;
     bool is_good(const Eigen::VectorXd& x) const;

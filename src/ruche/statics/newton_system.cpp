@@ -15,6 +15,7 @@ constexpr double share_after_turning = 0.3;
 constexpr double least_share = 0.005;  // below it none
 constexpr double share_grows = 4.0;
 constexpr double share_falls = 8.0;  // 16 makes stars slower, 4 strips
+constexpr double rough_share_falls = 2.0;
 
 }  // namespace
 
@@ -66,14 +67,22 @@ bool NewtonSystem::step_with_mean(const NewtonPoint& at, Eigen::VectorXd& step) 
     }
 }
 
+void NewtonSystem::expect_indefinite() {
+    share_ = share_after_turning;
+    rough_ = true;
+}
+
 void NewtonSystem::adapt(bool halved) {
     if (halved) {
         share_ = std::clamp(share_grows * share_, 0.5 * first_share, 1.0);
+    } else if (rough_) {
+        share_ /= rough_share_falls;
     } else {
         share_ = after_gauss_newton_ && share_ < 1.0 ? 0.0 : share_ / share_falls;
         if (share_ < least_share) share_ = 0.0;
     }
     after_gauss_newton_ = false;
+    rough_ = false;
 }
 
 /// The exact step to a part in a thousand, or to what `tolerance` asks for; where that would take long, what

@@ -61,6 +61,10 @@ class NewtonSystem {
     /// Gauss-Newton form in the next matrix, one that had not for less.
     void adapt(bool halved);
 
+    /// What the last Gauss-Newton step has left is too rough for the exact Hessian: the next matrix has a
+    /// share of that form at once, which falls slowly.
+    void expect_indefinite();
+
     /// The model's pattern is another one from now on.
     void change_pattern() { pattern_is_new_ = true; }
 
@@ -81,6 +85,7 @@ class NewtonSystem {
     AssembledSums gauss_newton_;
     AssembledSums mean_;
     bool after_gauss_newton_ = false;  // the last step was, and no exact one has been taken since
+    bool rough_ = false;               // expected to be, and no exact step has been taken since
     bool pattern_is_new_ = false;      // since the last factorisation
     bool factor_is_near_ = false;      // the last factor is of an exact Hessian
     double shift_ = 0.0;               // of the last indefinite Hessian, N/mm
