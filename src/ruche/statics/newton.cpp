@@ -182,7 +182,7 @@ void Newton::relax_spots() {
 
 /// Takes short waves out before the first exact Hessian: the compression that the Gauss-Newton form leaves
 /// behind in single elements makes that one indefinite, or so nearly so that its step is lost along soft
-/// shapes. Where no step takes them out, one is expected that is.
+/// shapes. Where that cannot be done, the exact Hessian is expected to be indefinite.
 void Newton::smooth() {
     const double turned = rotation_;
     evaluate(Order::hessian);

@@ -14,8 +14,8 @@ constexpr double first_share = 0.1;
 constexpr double share_after_turning = 0.3;
 constexpr double least_share = 0.005;  // below it none
 constexpr double share_grows = 4.0;
-constexpr double share_falls = 8.0;  // 16 makes stars slower, 4 strips
-constexpr double rough_share_falls = 2.0;
+constexpr double share_falls = 8.0;        // 16 makes stars slower, 4 strips
+constexpr double rough_share_falls = 2.0;  // an eighth is mostly not enough there
 
 }  // namespace
 

@@ -54,7 +54,7 @@ class SparseCholesky {
 std::string blas_kernels();
 
 /// Nested dissection (METIS) of a graph given as adjacency lists in compressed rows (both directions, no
-/// loops).
+/// loops). Throws std::bad_alloc, or std::runtime_error where METIS gives up.
 std::vector<int> nested_dissection(std::span<const int> start, std::span<const int> neighbours);
 
 /// Elimination order of the vertices: nested dissection of the pattern's vertex graph.
