@@ -160,14 +160,15 @@ bool Newton::line_search(Order wanted_next) {
     return false;
 }
 
-/// Nonlinear elimination after a step, unless Newton's method converges well without it. `trial_` has the
-/// gradient.
+/// Nonlinear elimination after a step, unless Newton's method converges well without it or has converged.
+/// `trial_` has the gradient.
 void Newton::relax_spots() {
     constexpr double converging = 0.01;
     constexpr int most_sweeps = 2;
     // While the sheet turns, spots with their neighbours go to shapes of their own that fit no other part.
     const int rings = rotation_ <= turning ? 1 : 0;
-    for (int sweep = 0; sweep < most_sweeps && largest(trial_) > converging * residual(); ++sweep) {
+    const double enough = std::max(converging * residual(), options_.residual_tolerance_n);
+    for (int sweep = 0; sweep < most_sweeps && largest(trial_) > enough; ++sweep) {
         const Eigen::VectorXd from = x_;
         trial_at_.resize(0);
         elimination_(model(), x_, trial_.gradient, rings);
