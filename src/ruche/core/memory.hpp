@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 namespace ruche {
 
@@ -10,5 +11,9 @@ std::size_t memory_available();
 
 /// Bytes that the process holds in memory now.
 std::size_t memory_in_use();
+
+/// Asks the system to hand out the memory of a large array now, in few calls: to hand it out page by page as
+/// it is first written to takes about twice as long. Where that is not possible nothing happens.
+void hand_out(std::span<double> array);
 
 }  // namespace ruche

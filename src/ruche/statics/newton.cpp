@@ -199,11 +199,18 @@ void Newton::smooth() {
     rotation_ = turned;
 }
 
-/// Where the last step bent the sheet in a few places only, those come to rest on their own, all else held.
-void Newton::settle_places() {
+/// The places that a step bends, which turns the triangles by `spins`, where it bends the sheet in a few
+/// only.
+void Newton::find_places(std::span<const Vec3> spins) {
+    places_.clear();
     if (wary_ || contact_ || !model().input().rods.empty()) return;
+    places_ = bending_places(model(), held_, spins);
+}
+
+/// The places that the last step has bent come to rest on their own, all else held.
+void Newton::settle_places() {
     try {
-        for (const std::vector<int>& place : bending_places(model(), held_, spins_)) {
+        for (const std::vector<int>& place : places_) {
             if (control_.stopped() || control_.timed_out()) return;
             const SheetPiece piece = cut_out(model(), place, x_);
             piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x_)), x_);
@@ -373,10 +380,12 @@ bool Newton::step(Order order) {
     const bool solved = exact ? system_.exact_step(here(), rotation_, options_.residual_tolerance_n, step_)
                               : system_.gauss_newton_step(here(), step_);
     if (!solved) return false;
-    spins_ = retraction_.spins(x_, step_);
-    rotation_ = retraction_.rms_rotation(spins_);
-    const bool moved =
-        line_search(exact && rotation_ < NewtonSystem::nearly_at_rest ? Order::hessian : Order::gradient);
+    const std::vector<Vec3> spins = retraction_.spins(x_, step_);
+    rotation_ = retraction_.rms_rotation(spins);
+    find_places(spins);
+    // The next Hessian comes along for less, unless places move before it is wanted.
+    const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty();
+    const bool moved = line_search(last_steps ? Order::hessian : Order::gradient);
     if (exact) system_.adapt(halved_);
     return moved;
 }

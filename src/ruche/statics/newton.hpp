@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -74,6 +75,7 @@ class Newton {
     void cover_contacts(const Eigen::VectorXd& x);
     bool line_search(Order wanted_next);
     void relax_spots();
+    void find_places(std::span<const Vec3> spins);
     void settle_places();
     void smooth();
     void relax_while(Eigen::VectorXd& x, double worth);
@@ -100,9 +102,9 @@ class Newton {
     EnergyTerms trial_terms_;
     Eigen::VectorXd trial_at_;  // where `trial_` has the Hessian; empty when it has none
     EnergyTerms terms_;
-    bool halved_ = false;         // the last line search had to
-    std::vector<Vec3> spins_;     // of the triangles in the last step
-    double rotation_ = infinity;  // rms of the last step
+    bool halved_ = false;                   // the last line search had to
+    double rotation_ = infinity;            // rms of the last step
+    std::vector<std::vector<int>> places_;  // that the last step has bent, when it has bent few only
     int iterations_ = 0;
     std::vector<double> residuals_;  // of all runs
     bool wary_ = false;

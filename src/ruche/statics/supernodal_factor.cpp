@@ -10,6 +10,7 @@
 #include <functional>
 #include <numeric>
 
+#include "ruche/core/memory.hpp"
 #include "ruche/core/parallel.hpp"
 
 extern "C" void dpotrf_(const char* uplo, const int* n, double* a, const int* lda, int* info);
@@ -269,7 +270,9 @@ bool SupernodalFactor::factor_together(int s, std::span<const double> values) {
 }
 
 void SupernodalFactor::make_room() {
-    if (!values_) values_ = std::make_unique_for_overwrite<double[]>(structure_.value_count());
+    if (values_) return;
+    values_ = std::make_unique_for_overwrite<double[]>(structure_.value_count());
+    hand_out({values_.get(), structure_.value_count()});
 }
 
 bool SupernodalFactor::factorize(std::span<const double> values) {
