@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/SparseCore>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -91,6 +92,11 @@ struct EnergyTerms {
     double gravity = 0.0;  ///< with dead forces and the table
     double contact = 0.0;  ///< between parts of the sheet
     double total() const { return fabric_membrane + fabric_bending + plastic + gravity + contact; }
+    /// Sum of magnitudes: what rounding errors of the total are relative to.
+    double scale() const {
+        return std::abs(fabric_membrane) + std::abs(fabric_bending) + std::abs(plastic) + std::abs(gravity) +
+               std::abs(contact);
+    }
 };
 
 /// What a careful reader of a result has to know about a state.

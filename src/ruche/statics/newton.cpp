@@ -74,11 +74,6 @@ void Newton::keep_evaluation() {
     trial_at_ = x_;
 }
 
-double Newton::energy_scale() const {
-    return std::abs(terms_.fabric_membrane) + std::abs(terms_.fabric_bending) + std::abs(terms_.plastic) +
-           std::abs(terms_.gravity) + std::abs(terms_.contact);
-}
-
 bool Newton::is_good(const Eigen::VectorXd& x) const { return tangle(model().health(x)).empty(); }
 
 double Newton::largest_turn() const {
@@ -134,16 +129,16 @@ bool Newton::line_search(Order wanted_next) {
         cover_contacts(candidate);
         if (halving < wary_halvings && !may_take(candidate)) continue;
         // The first candidate is taken nearly always, and what comes after a step wants the gradient.
-        const bool with_gradient = halving == 0 || std::abs(slope) < 1e-9 * energy_scale();
+        const bool with_gradient = halving == 0 || std::abs(slope) < 1e-9 * terms_.scale();
         const Order order = halving == 0 ? wanted_next : Order::gradient;
         if (with_gradient) trial_terms_ = evaluate(candidate, order, trial_);
         double trial = with_gradient ? trial_terms_.total() : model().energy(candidate);
         const auto is_lower = [&] { return std::isfinite(trial) && trial <= energy + 1e-4 * t * slope; };
         bool lower = is_lower();
-        if (std::abs(slope) < 1e-9 * energy_scale()) {
+        if (std::abs(slope) < 1e-9 * terms_.scale()) {
             // Energy differences drown in rounding: judge by the gradient.
             lower |= std::isfinite(trial) && largest(trial_) < before;
-            if (!lower && std::abs(slope) < 1e-13 * energy_scale() && halving > 3) return false;
+            if (!lower && std::abs(slope) < 1e-13 * terms_.scale() && halving > 3) return false;
         }
         if (lower && order == Order::hessian) trial_at_ = candidate;
         if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
@@ -199,15 +194,8 @@ void Newton::smooth() {
     rotation_ = turned;
 }
 
-/// The places that a step bends, which turns the triangles by `spins`, where it bends the sheet in a few
-/// only.
-void Newton::find_places(std::span<const Vec3> spins) {
-    places_.clear();
-    if (wary_ || contact_ || !model().input().rods.empty()) return;
-    places_ = bending_places(model(), held_, spins);
-}
-
-/// The places that the last step has bent come to rest on their own, all else held.
+/// Where the last step has bent the sheet in a few places only, those come to rest on their own, all else
+/// held.
 void Newton::settle_places() {
     try {
         for (const std::vector<int>& place : places_) {
@@ -244,7 +232,7 @@ bool Newton::leave_saddle() {
     direction /= direction.head(3 * model().vertex_count()).cwiseAbs().maxCoeff();
     if (direction.dot(sums_.gradient) > 0.0) direction = -direction;
     const double energy = terms_.total();
-    double best_energy = energy - 1e-14 * energy_scale();
+    double best_energy = energy - 1e-14 * terms_.scale();
     Eigen::VectorXd best;
     for (double length = 4.0; length > 1e-4; length *= 0.5) {
         for (const double sign : {1.0, -1.0}) {
@@ -382,7 +370,8 @@ bool Newton::step(Order order) {
     if (!solved) return false;
     const std::vector<Vec3> spins = retraction_.spins(x_, step_);
     rotation_ = retraction_.rms_rotation(spins);
-    find_places(spins);
+    places_.clear();
+    if (!wary_ && !contact_ && model().input().rods.empty()) places_ = bending_places(model(), held_, spins);
     // The next Hessian comes along for less, unless places move before it is wanted.
     const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty();
     const bool moved = line_search(last_steps ? Order::hessian : Order::gradient);

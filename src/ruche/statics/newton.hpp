@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -62,7 +61,6 @@ class Newton {
     void evaluate(Order order);
     void keep_evaluation();
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
-    double energy_scale() const;
     bool is_good(const Eigen::VectorXd& x) const;
     bool may_take(const Eigen::VectorXd& x) const { return !wary_ || is_good(x); }
     double largest_turn() const;
@@ -75,7 +73,6 @@ class Newton {
     void cover_contacts(const Eigen::VectorXd& x);
     bool line_search(Order wanted_next);
     void relax_spots();
-    void find_places(std::span<const Vec3> spins);
     void settle_places();
     void smooth();
     void relax_while(Eigen::VectorXd& x, double worth);
@@ -104,7 +101,7 @@ class Newton {
     EnergyTerms terms_;
     bool halved_ = false;                   // the last line search had to
     double rotation_ = infinity;            // rms of the last step
-    std::vector<std::vector<int>> places_;  // that the last step has bent, when it has bent few only
+    std::vector<std::vector<int>> places_;  // that the last step has bent, if few only
     int iterations_ = 0;
     std::vector<double> residuals_;  // of all runs
     bool wary_ = false;
