@@ -85,9 +85,16 @@ test("studio: a drawing that is dropped is shown to scale and previewed after ev
     await page.waitForFunction(() => document.querySelector("#source").value.includes("my-torus.svg"));
     await page.waitForFunction(() => document.querySelectorAll(".layout .strip").length > 20);
     assert.ok(existsSync(join(folder, "my-torus.svg")));
-    const bar = await page.locator(".layout .scalebar").evaluate((e) => ({ px: e.firstElementChild.getBoundingClientRect().width, mm: parseFloat(e.lastElementChild.textContent) }));
-    const px = await page.locator(".layout svg > g > path").first().evaluate((e) => e.getBoundingClientRect().width);
-    assert.ok(Math.abs((px * bar.mm) / bar.px - 68) < 1, `the fabric is 68 mm wide, the bar says ${(px * bar.mm) / bar.px}`);
+    // In one go: the drawing may be drawn anew between two questions.
+    const measured = await page.waitForFunction(() => {
+        const bar = document.querySelector(".layout .scalebar");
+        const fabric = document.querySelector(".layout svg > g > path");
+        if (!bar || !fabric) return false;
+        const px = fabric.getBoundingClientRect().width;
+        return (px * parseFloat(bar.lastElementChild.textContent)) / bar.firstElementChild.getBoundingClientRect().width;
+    });
+    const width = await measured.jsonValue();
+    assert.ok(Math.abs(width - 68) < 1, `the fabric is 68 mm wide, the bar says ${width}`);
     await page.waitForSelector(".live canvas", { timeout: 600000 });
     await idle(page);
     const times = [];
