@@ -7,7 +7,6 @@
 #include <new>
 #include <utility>
 
-#include "ruche/core/memory.hpp"
 #include "ruche/statics/bending_places.hpp"
 #include "ruche/statics/fabric_relaxation.hpp"
 #include "ruche/statics/iterate.hpp"
@@ -26,7 +25,9 @@ Newton::Newton(const Model& model, const SolveOptions& options, const Control& c
 
 Newton::Newton(const SheetPiece& piece, bool loaded, const SolveOptions& options, const Control& control)
     : Newton(piece.model, piece.held, loaded, options, control,
-             vertex_elimination_order(piece.model.pattern())) {}
+             vertex_elimination_order(piece.model.pattern())) {
+    settles_places_ = false;
+}
 
 Newton::Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
                const Control& control, const std::vector<int>& vertex_order)
@@ -39,6 +40,7 @@ Newton::Newton(const Model& model, std::vector<char> held, bool loaded, const So
       retraction_(model, vertex_order),
       system_(model, held_, loaded, vertex_order),
       elimination_(model, held_) {
+    settles_places_ = model.input().rods.empty() && !model.input().options.contact;
     if (model.input().options.contact) {
         own_.emplace(model.input());
         contact_.emplace(model);
@@ -145,6 +147,14 @@ bool Newton::line_search(Order wanted_next) {
             // A few spots that it has thrown far off must not shorten the step of the whole sheet.
             trial -= elimination_.after_step(model(), x_, before, candidate, trial_.gradient);
             lower = is_lower() && may_take(candidate);
+            if (!lower && !places_.empty()) {
+                // Nor a few places that come to rest after it anyway.
+                settle_places(candidate);
+                trial_terms_ = evaluate(candidate, Order::gradient, trial_);
+                trial = trial_terms_.total();
+                lower = is_lower() && may_take(candidate);
+                if (lower) places_.clear();
+            }
         }
         if (lower) {
             x_ = candidate;
@@ -181,6 +191,7 @@ void Newton::relax_spots() {
 /// shapes. Where that cannot be done, the exact Hessian is expected to be indefinite.
 void Newton::smooth() {
     const double turned = rotation_;
+    places_.clear();
     evaluate(Order::hessian);
     step_ = smoothing_step(model().pattern(), held_, sums_.hessian, sums_.gradient, smoothing_sweeps);
     rotation_ = retraction_.rms_rotation(x_, step_);
@@ -196,12 +207,12 @@ void Newton::smooth() {
 
 /// Where the last step has bent the sheet in a few places only, those come to rest on their own, all else
 /// held.
-void Newton::settle_places() {
+void Newton::settle_places(Eigen::VectorXd& x) {
     try {
         for (const std::vector<int>& place : places_) {
             if (control_.stopped() || control_.timed_out()) return;
-            const SheetPiece piece = cut_out(model(), place, x_);
-            piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x_)), x_);
+            const SheetPiece piece = cut_out(model(), place, x);
+            piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x)), x);
         }
     } catch (const std::bad_alloc&) {
         // It is not needed.
@@ -212,7 +223,7 @@ Eigen::VectorXd Newton::settle(const Eigen::VectorXd& start) {
     constexpr int most_steps = 10;
     constexpr double settled = 1e-3;  // rad
     x_ = start;
-    if (!missing_memory().empty()) return x_;
+    if (!system_.missing_memory(model(), options_.memory_limit_mb).empty()) return x_;
     for (rotation_ = turning; rotation_ > settled && iterations_ < most_steps; ++iterations_) {
         evaluate(Order::hessian);
         if (residual() <= options_.residual_tolerance_n || control_.stopped() || control_.timed_out() ||
@@ -273,25 +284,6 @@ void Newton::announce() const {
                      model().size(), system_.factor_megabytes())});
 }
 
-/// Says so when the factor and the matrices that go with it do not fit into memory; else empty.
-std::string Newton::missing_memory() const {
-    constexpr double megabyte = 1e6;
-    constexpr double matrices =
-        5.0;  // exact, Gauss-Newton, their mean, a trial's, the one that is factorised
-    const double needed =
-        1.05 * system_.factor_megabytes() +
-        matrices * sizeof(double) * static_cast<double>(model().pattern().row_index().size()) / megabyte;
-    double available = static_cast<double>(memory_available()) / megabyte;
-    if (options_.memory_limit_mb > 0.0) {
-        const double left = options_.memory_limit_mb - static_cast<double>(memory_in_use()) / megabyte;
-        available = std::min(available, left);
-    }
-    if (needed <= available) return {};
-    return fmt::format(
-        "not enough memory for this mesh: the factorisation needs {:.0f} MB more, {:.0f} MB are available",
-        needed, std::max(0.0, available));
-}
-
 Eigen::VectorXd Newton::carried_over(const LayoutShape& start) {
     Eigen::VectorXd x = transfer(start, model(), retraction_);
     // At corners of strips a small element may still come out crushed or folded over, and fabric everywhere
@@ -323,7 +315,7 @@ Equilibrium Newton::run(const Eigen::VectorXd& start) {
     rotation_ = infinity;
     Equilibrium result;
     result.residual = infinity;
-    result.message = missing_memory();
+    result.message = system_.missing_memory(model(), options_.memory_limit_mb);
     try {
         if (result.message.empty()) {
             iterate(result);
@@ -371,7 +363,7 @@ bool Newton::step(Order order) {
     const std::vector<Vec3> spins = retraction_.spins(x_, step_);
     rotation_ = retraction_.rms_rotation(spins);
     places_.clear();
-    if (!wary_ && !contact_ && model().input().rods.empty()) places_ = bending_places(model(), held_, spins);
+    if (settles_places_) places_ = bending_places(model(), held_, spins);
     // The next Hessian comes along for less, unless places move before it is wanted.
     const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty();
     const bool moved = line_search(last_steps ? Order::hessian : Order::gradient);
@@ -440,7 +432,7 @@ void Newton::iterate(Equilibrium& result) {
         }
         if (!stalled) {
             relax_spots();
-            settle_places();
+            settle_places(x_);
             if (!exact && rotation_ <= turning) smooth();
         }
     }

@@ -42,7 +42,10 @@ class Newton {
     Eigen::VectorXd carried_over(const LayoutShape& start);
 
     /// From now on no step turns the sheet far, and shorter ones are tried before one leads into a tangle.
-    void be_wary() { wary_ = true; }
+    void be_wary() {
+        wary_ = true;
+        settles_places_ = false;
+    }
 
     /// The last state of all runs that is no tangle; empty when there was none.
     const Eigen::VectorXd& last_good() const { return last_good_; }
@@ -73,11 +76,10 @@ class Newton {
     void cover_contacts(const Eigen::VectorXd& x);
     bool line_search(Order wanted_next);
     void relax_spots();
-    void settle_places();
+    void settle_places(Eigen::VectorXd& x);
     void smooth();
     void relax_while(Eigen::VectorXd& x, double worth);
     bool leave_saddle();
-    std::string missing_memory() const;
     void report() const;
 
     const Model* original_;
@@ -101,6 +103,7 @@ class Newton {
     EnergyTerms terms_;
     bool halved_ = false;                   // the last line search had to
     double rotation_ = infinity;            // rms of the last step
+    bool settles_places_ = false;           // where few bend
     std::vector<std::vector<int>> places_;  // that the last step has bent, if few only
     int iterations_ = 0;
     std::vector<double> residuals_;  // of all runs

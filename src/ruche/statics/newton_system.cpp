@@ -1,8 +1,12 @@
 #include "ruche/statics/newton_system.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "ruche/core/memory.hpp"
 
 namespace ruche {
 namespace {
@@ -162,6 +166,24 @@ bool NewtonSystem::steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& di
     if (!ready) return false;
     for (int i = 0; i < 20; ++i) direction = cholesky_.solve(direction.normalized()).col(0);
     return true;
+}
+
+std::string NewtonSystem::missing_memory(const Model& model, double limit_mb) const {
+    constexpr double megabyte = 1e6;
+    constexpr double matrices =
+        5.0;  // exact, Gauss-Newton, their mean, a trial's, the one that is factorised
+    const double needed =
+        1.05 * factor_megabytes() +
+        matrices * sizeof(double) * static_cast<double>(model.pattern().row_index().size()) / megabyte;
+    double available = static_cast<double>(memory_available()) / megabyte;
+    if (limit_mb > 0.0) {
+        const double left = limit_mb - static_cast<double>(memory_in_use()) / megabyte;
+        available = std::min(available, left);
+    }
+    if (needed <= available) return {};
+    return fmt::format(
+        "not enough memory for this mesh: the factorisation needs {:.0f} MB more, {:.0f} MB are available",
+        needed, std::max(0.0, available));
 }
 
 std::vector<char> held_unknowns(const Model& model) {

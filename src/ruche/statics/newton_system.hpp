@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "ruche/energy/model.hpp"
@@ -70,6 +71,10 @@ class NewtonSystem {
 
     int factorizations() const { return factorizations_; }
     double factor_megabytes() const { return cholesky_.factor_megabytes(); }
+
+    /// Says so when the factor and the matrices that go with it do not fit into memory, or the process would
+    /// grow beyond `limit_mb` (0 = no limit); else empty.
+    std::string missing_memory(const Model& model, double limit_mb) const;
 
   private:
     void build_matrix(const NewtonPoint& at, Order order, double shift);
