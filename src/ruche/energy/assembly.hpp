@@ -93,7 +93,7 @@ class TermAssembly {
         for (int i = 0; i < unknowns_per_element; ++i) {
             if (local[i] < 0) continue;
             sums.gradient[local[i]] += own.gradient[i];
-            if (!wants_hessian(order)) continue;
+            if (!order.wants_hessian()) continue;
             for (int j = 0; j < unknowns_per_element; ++j) {
                 if (local[j] >= 0)
                     sums.hessian(local[i], local[j]) += own.hessian(std::max(i, j), std::min(i, j));
@@ -196,7 +196,7 @@ class TermAssembly {
                 for (int c = 0; c < local_size(i); ++c)
                     sums.gradient[at + c] += local.gradient[local_start(i) + c];
             }
-            if (wants_hessian(order)) scatter(e, nodes, local.hessian, sums.hessian.data());
+            if (order.wants_hessian()) scatter(e, nodes, local.hessian, sums.hessian.data());
         }
         return energy;
     }

@@ -86,18 +86,18 @@ Local<12> ContactBarrier::evaluate(int element, const Unknowns& x, Order order) 
 
     const Eigen::Matrix<double, 12, 1> gradient = scale * squared_distance_gradient(closest, r);
     local.gradient = (k * m.value * b.slope) * gradient + (k * b.value) * m.gradient;
-    if (!wants_hessian(order)) return local;
+    if (!order.wants_hessian()) return local;
 
-    if (order == Order::gauss_newton) {
-        if (k > 0.0) local.hessian.noalias() = (k * m.value * b.curvature) * gradient * gradient.transpose();
-        return local;
-    }
-    local.hessian.noalias() = (k * m.value * b.curvature) * gradient * gradient.transpose();
-    local.hessian += (k * m.value * b.slope * scale) * squared_distance_hessian(closest, r, at);
+    const double exact = order.exact_share();
+    const double convex = k > 0.0 ? k : exact * k;
+    local.hessian.noalias() = (convex * m.value * b.curvature) * gradient * gradient.transpose();
+    if (order == Order::gauss_newton) return local;
+    const double curved = exact * k;
+    local.hessian += (curved * m.value * b.slope * scale) * squared_distance_hessian(closest, r, at);
     if (m.value != 1.0) {
-        local.hessian.noalias() += (k * b.slope) * gradient * m.gradient.transpose();
-        local.hessian.noalias() += (k * b.slope) * m.gradient * gradient.transpose();
-        local.hessian += (k * b.value) * m.hessian;
+        local.hessian.noalias() += (curved * b.slope) * gradient * m.gradient.transpose();
+        local.hessian.noalias() += (curved * b.slope) * m.gradient * gradient.transpose();
+        local.hessian += (curved * b.value) * m.hessian;
     }
     return local;
 }

@@ -27,13 +27,13 @@ Local<12> FabricBending::evaluate(int element, const Unknowns& x, Order order) c
         theta.segment<3>(3 * right_slot[i]) += right.gradient(i);
     }
     local.gradient = slope * theta;
-    if (!wants_hessian(order)) return local;
+    if (!order.wants_hessian()) return local;
 
     const double curvature = k * sec2 * (1.0 + 3.0 * tangent * tangent);
     add_lower_product<12>(curvature * theta, theta, local.hessian);
-    if (order != Order::hessian) return local;
-    left.add_second_derivative(slope, left_slot, local.hessian);
-    right.add_second_derivative(slope, right_slot, local.hessian);
+    if (order == Order::gauss_newton) return local;
+    left.add_second_derivative(order.exact_share() * slope, left_slot, local.hessian);
+    right.add_second_derivative(order.exact_share() * slope, right_slot, local.hessian);
     return local;
 }
 

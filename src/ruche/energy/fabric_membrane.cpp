@@ -45,14 +45,14 @@ Local<9> FabricMembrane::evaluate(int element, const Unknowns& x, Order order) c
     const Vec3 slopes = e.volume * (e.strain_of_lengths.transpose() * response.stress);
     const Eigen::Matrix<double, 3, 9> lengths = edge_length_gradient(v);
     local.gradient = lengths.transpose() * slopes;
-    if (!wants_hessian(order)) return local;
+    if (!order.wants_hessian()) return local;
 
-    const Mat3 tangent = order == Order::hessian ? response.tangent : response.semidefinite_tangent();
+    const Mat3 tangent = response.mean_tangent(order.gauss_newton_share());
     const Mat3 in_lengths = e.volume * (e.strain_of_lengths.transpose() * tangent * e.strain_of_lengths);
     const Eigen::Matrix<double, 3, 9> weighted = in_lengths * lengths;
     for (int i = 0; i < 3; ++i)
         add_lower_product<9>(lengths.row(i).transpose(), weighted.row(i).transpose(), local.hessian);
-    if (order == Order::hessian) add_edge_length_curvature(slopes, local.hessian);
+    if (order != Order::gauss_newton) add_edge_length_curvature(order.exact_share() * slopes, local.hessian);
     return local;
 }
 

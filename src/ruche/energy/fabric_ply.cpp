@@ -50,8 +50,8 @@ FabricPly::Response FabricPly::evaluate(const FabricLaw& law, const FormVector& 
         sum.energy += volume * r.energy;
         if (order == Order::value) continue;
         sum.stress += volume * (of_deviation.transpose() * r.stress);
-        if (!wants_hessian(order)) continue;
-        const Mat3 tangent = order == Order::hessian ? r.tangent : r.semidefinite_tangent();
+        if (!order.wants_hessian()) continue;
+        const Mat3 tangent = r.mean_tangent(order.gauss_newton_share());
         sum.tangent += volume * (of_deviation.transpose() * tangent * of_deviation);
     }
     return sum;

@@ -207,13 +207,14 @@ void LaminateTerm::differentiate(const Prepared& e, const Kinematics& k, const S
         local.gradient.segment<3>(9 + 3 * i) = slopes[3 + i] * flap_slope.col(i);
     }
     local.gradient.head<9>() = measures.lazyProduct(slopes);
-    if (!wants_hessian(order)) return;
+    if (!order.wants_hessian()) return;
 
+    const double exact = order.exact_share();
     FormMatrix jacobian = FormMatrix::Identity();  // d(L, c)/d(L, phi)
     jacobian.bottomLeftCorner<3, 3>() = c_lengths;
     jacobian.bottomRightCorner<3, 3>() = c_phi.asDiagonal();
     FormMatrix in_measures = jacobian.transpose() * response.tangent * jacobian;
-    if (order == Order::hessian) {
+    if (order != Order::gauss_newton) {
         // Second derivatives of c_i = h_i(L) sin(phi_i), weighted with the moments:
         // d2 h_i / h_i = g g^T + dg,  dg_jk = d2(16A^2)_jk / (32 A^2) - p_j p_k / (2 (16A^2)^2) + delta_ijk /
         // (2 L_i^2).
@@ -223,13 +224,14 @@ void LaminateTerm::differentiate(const Prepared& e, const Kinematics& k, const S
             area_curvature / (2.0 * area16) - p * p.transpose() / (2.0 * area16 * area16);
         for (int i = 0; i < 3; ++i) {
             if (!k.hinged[i]) continue;
+            const double exact_moment = exact * moment[i];
             const Vec3 g = log_slope.row(i).transpose();
             Mat3 second = g * g.transpose() + log_curvature;
             second(i, i) += 0.5 / (k.lengths[i] * k.lengths[i]);
-            in_measures.topLeftCorner<3, 3>() += moment[i] * c[i] * second;
-            in_measures.block<3, 1>(0, 3 + i) += moment[i] * c_phi[i] * g;
-            in_measures.block<1, 3>(3 + i, 0) += moment[i] * c_phi[i] * g.transpose();
-            in_measures(3 + i, 3 + i) -= moment[i] * c[i];
+            in_measures.topLeftCorner<3, 3>() += exact_moment * c[i] * second;
+            in_measures.block<3, 1>(0, 3 + i) += exact_moment * c_phi[i] * g;
+            in_measures.block<1, 3>(3 + i, 0) += exact_moment * c_phi[i] * g.transpose();
+            in_measures(3 + i, 3 + i) -= exact_moment * c[i];
         }
     }
     const Eigen::Matrix<double, 9, 6> weighted = measures.lazyProduct(in_measures);
@@ -248,8 +250,9 @@ void LaminateTerm::differentiate(const Prepared& e, const Kinematics& k, const S
                 (both * e.y_to_xi[i]) * flap_slope.col(j).transpose();
         }
     }
-    if (order != Order::hessian) return;
+    if (order == Order::gauss_newton) return;
 
+    slopes *= exact;
     add_edge_length_curvature(slopes.head<3>(), local.hessian);
     for (int i = 0; i < 3; ++i) {
         if (!k.hinged[i]) continue;

@@ -18,7 +18,7 @@ Local<3> TableContact::evaluate(int element, const Unknowns& x, Order order) con
     local.value = 0.5 * k * gap * gap;
     if (order == Order::value) return local;
     local.gradient = k * gap * plane_.up;
-    if (wants_hessian(order)) local.hessian = k * plane_.up * plane_.up.transpose();
+    if (order.wants_hessian()) local.hessian = k * plane_.up * plane_.up.transpose();
     return local;
 }
 

@@ -248,7 +248,7 @@ void Model::unwind(Eigen::VectorXd& x) const { parts_->laminate->term().unwind(x
 EnergyTerms Model::evaluate_fabric(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(size());
-    if (wants_hessian(order)) sums.hessian.assign(parts_->pattern->row_index().size(), 0.0);
+    if (order.wants_hessian()) sums.hessian.assign(parts_->pattern->row_index().size(), 0.0);
     EnergyTerms terms;
     terms.fabric_membrane = parts_->membrane->add(unknowns, order, sums);
     terms.fabric_bending = parts_->bending->add(unknowns, order, sums);

@@ -54,7 +54,7 @@ void Model::add_gradient(const Patch& patch, const Eigen::VectorXd& x, double fa
 double Model::evaluate(const Patch& patch, const Eigen::VectorXd& x, Order order, DenseSums& sums) const {
     const Unknowns unknowns = parts_->unknowns(x);
     if (order != Order::value) sums.gradient.setZero(patch.size());
-    if (wants_hessian(order)) sums.hessian.setZero(patch.size(), patch.size());
+    if (order.wants_hessian()) sums.hessian.setZero(patch.size(), patch.size());
     double energy = 0.0;
     std::size_t term = 0;
     parts_->for_each_term([&](const auto& assembly) {

@@ -71,17 +71,17 @@ Local<13> RodEdge::evaluate(int element, const Unknowns& x, Order order) const {
     left_fold[12] = -1.0 / rod.length;
     right_fold[12] = 1.0 / rod.length;
     local.gradient = stretching * strain * strain_slope + left.slope * left_fold + right.slope * right_fold;
-    if (!wants_hessian(order)) return local;
+    if (!order.wants_hessian()) return local;
 
     local.hessian = stretching * strain_slope * strain_slope.transpose() +
                     left.curvature * left_fold * left_fold.transpose() +
                     right.curvature * right_fold * right_fold.transpose();
-    if (order != Order::hessian) return local;
-    const Mat3 geometric = stretching * strain / length2 * Mat3::Identity();
+    if (order == Order::gauss_newton) return local;
+    const Mat3 geometric = order.exact_share() * stretching * strain / length2 * Mat3::Identity();
     local.hessian.block<3, 3>(0, 0) += geometric;
     local.hessian.block<3, 3>(3, 3) += geometric;
     local.hessian.block<3, 3>(3, 0) -= geometric;
-    const double slope = 0.5 * (left.slope + right.slope);
+    const double slope = 0.5 * order.exact_share() * (left.slope + right.slope);
     hinge.left.add_second_derivative(slope, left_slot, local.hessian);
     hinge.right.add_second_derivative(slope, right_slot, local.hessian);
     return local;

@@ -163,19 +163,20 @@ Local<23> RodJoint::evaluate(int element, const Unknowns& x, Order order) const 
         omega.col(3 * e + 2) = motions[e].rho[1];
     }
     local.gradient = omega * slopes;
-    if (!wants_hessian(order)) return local;
+    if (!order.wants_hessian()) return local;
 
     Eigen::Matrix<double, 6, 6> in_omega = kappa_omega.transpose() * stiffness.asDiagonal() * kappa_omega;
-    if (order == Order::hessian) {
+    if (order != Order::gauss_newton) {
+        const Vec3 weighted_moment = order.exact_share() * moment;
         // moment . d2 kappa / dq2: kappa = 2 v / w.
         Mat4 kappa_curvature = Mat4::Zero();
-        kappa_curvature(0, 0) = 2.0 * moment.dot(kappa) / (w * w);
-        kappa_curvature.bottomLeftCorner<3, 1>() = -2.0 / (w * w) * moment;
-        kappa_curvature.topRightCorner<1, 3>() = -2.0 / (w * w) * moment.transpose();
+        kappa_curvature(0, 0) = 2.0 * weighted_moment.dot(kappa) / (w * w);
+        kappa_curvature.bottomLeftCorner<3, 1>() = -2.0 / (w * w) * weighted_moment;
+        kappa_curvature.topRightCorner<1, 3>() = -2.0 / (w * w) * weighted_moment.transpose();
         in_omega += q_omega.transpose() * kappa_curvature * q_omega;
         // d2 q / domega_0 domega_1 = -e_i q e_j / 4; those by one frame alone are along q, where kappa is
         // constant.
-        const Vec4 slope_q = kappa_q.transpose() * moment;
+        const Vec4 slope_q = kappa_q.transpose() * weighted_moment;
         Mat3 mixed;
         for (int j = 0; j < 3; ++j) {
             const Vec4 turned = q_times.col(1 + j);  // q e_j
@@ -185,9 +186,10 @@ Local<23> RodJoint::evaluate(int element, const Unknowns& x, Order order) const 
         in_omega.bottomLeftCorner<3, 3>() += mixed.transpose();
     }
     local.hessian.noalias() = omega * in_omega * omega.transpose();
-    if (order != Order::hessian) return local;
+    if (order == Order::gauss_newton) return local;
     for (int e = 0; e < 2; ++e)
-        add_rotation_curvature(slopes.segment<3>(3 * e), frames[e], motions[e], e, local.hessian);
+        add_rotation_curvature(order.exact_share() * slopes.segment<3>(3 * e), frames[e], motions[e], e,
+                               local.hessian);
     return local;
 }
 

@@ -12,9 +12,34 @@ namespace ruche {
 
 /// How far to differentiate. `gauss_newton` fills the Hessian with a positive semidefinite part of it: the
 /// material's tangent in strain space between first derivatives, no second derivatives of the strains.
-enum class Order { value, gradient, hessian, gauss_newton };
+class Order {
+  public:
+    static const Order value;
+    static const Order gradient;
+    static const Order hessian;
+    static const Order gauss_newton;
 
-constexpr bool wants_hessian(Order order) { return order >= Order::hessian; }
+    /// The weighted mean of the exact Hessian and the Gauss-Newton form, with this share of the latter.
+    static constexpr Order mean(double gauss_newton_share) { return {2, gauss_newton_share}; }
+
+    constexpr bool operator==(const Order&) const = default;
+    constexpr bool wants_hessian() const { return derivatives_ == 2; }
+    /// Of what the Gauss-Newton form leaves out, how much the Hessian has.
+    constexpr double exact_share() const { return 1.0 - gauss_newton_share_; }
+    constexpr double gauss_newton_share() const { return gauss_newton_share_; }
+
+  private:
+    constexpr Order(int derivatives, double gauss_newton_share)
+        : derivatives_(derivatives), gauss_newton_share_(gauss_newton_share) {}
+
+    int derivatives_;
+    double gauss_newton_share_;
+};
+
+inline constexpr Order Order::value{0, 0.0};
+inline constexpr Order Order::gradient{1, 0.0};
+inline constexpr Order Order::hessian{2, 0.0};
+inline constexpr Order Order::gauss_newton{2, 1.0};
 
 /// Value, gradient and Hessian of one element, zero as far as `order` asks for them; the rest is left as it
 /// is. Of the Hessian only the lower triangle (row >= column) counts, whatever stands above it.
@@ -26,7 +51,7 @@ struct Local {
 
     explicit Local(Order order) {
         if (order != Order::value) gradient.setZero();
-        if (wants_hessian(order)) hessian.setZero();
+        if (order.wants_hessian()) hessian.setZero();
     }
 
     Eigen::Matrix<double, Size, Size> full_hessian() const {

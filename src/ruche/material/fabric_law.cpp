@@ -33,12 +33,12 @@ bool positive_definite(const Mat3& m) {
 
 }  // namespace
 
-Mat3 FabricResponse::semidefinite_tangent() const {
-    if (positive_definite(tangent)) return tangent;
+Mat3 FabricResponse::mean_tangent(double semidefinite_share) const {
+    if (semidefinite_share == 0.0 || positive_definite(tangent)) return tangent;
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(tangent);
     if (eigen.eigenvalues()[0] >= 0.0) return tangent;
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
-           eigen.eigenvectors().transpose();
+    const Vec3 kept = eigen.eigenvalues().cwiseMax((1.0 - semidefinite_share) * eigen.eigenvalues());
+    return eigen.eigenvectors() * kept.asDiagonal() * eigen.eigenvectors().transpose();
 }
 
 FabricLaw::FabricLaw(const Material& m, const Options& options)

@@ -11,8 +11,9 @@ struct FabricResponse {
     Vec3 stress = Vec3::Zero();
     Mat3 tangent = Mat3::Zero();
 
-    /// The tangent with its negative eigenvalues set to zero (the log terms and C are convex, ln J is not).
-    Mat3 semidefinite_tangent() const;
+    /// The tangent, or that with its negative eigenvalues set to zero (the log terms and C are convex, ln J
+    /// is not), or the weighted mean of both, with this share of the latter.
+    Mat3 mean_tangent(double semidefinite_share) const;
 };
 
 /// The paper's law for the bare fabric (eqs 1-5), a function of Green's strain in fabric axes, Voigt notation

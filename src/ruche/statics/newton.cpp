@@ -58,22 +58,14 @@ EnergyTerms Newton::evaluate(const Eigen::VectorXd& x, Order order, AssembledSum
 
 /// At the present state, unless the line search has done so already.
 void Newton::evaluate(Order order) {
-    if (order == Order::hessian && trial_at_.size() > 0 && trial_at_ == x_) {
+    if (order == trial_order_ && trial_at_.size() > 0 && trial_at_ == x_) {
         std::swap(sums_, trial_);
         terms_ = trial_terms_;
     } else {
         terms_ = evaluate(x_, order, sums_);
     }
+    order_ = order;
     trial_at_.resize(0);
-}
-
-/// For the next `evaluate`: what the last one found holds for the present state as well. Not with contact,
-/// which may have changed the pattern since.
-void Newton::keep_evaluation() {
-    if (contact_) return;
-    std::swap(sums_, trial_);
-    trial_terms_ = terms_;
-    trial_at_ = x_;
 }
 
 bool Newton::is_good(const Eigen::VectorXd& x) const { return tangle(model().health(x)).empty(); }
@@ -142,7 +134,10 @@ bool Newton::line_search(Order wanted_next) {
             lower |= std::isfinite(trial) && largest(trial_) < before;
             if (!lower && std::abs(slope) < 1e-13 * terms_.scale() && halving > 3) return false;
         }
-        if (lower && order == Order::hessian) trial_at_ = candidate;
+        if (lower && order.wants_hessian()) {
+            trial_at_ = candidate;
+            trial_order_ = order;
+        }
         if (!lower && halving == 0 && std::isfinite(trial) && !contact_) {
             // A few spots that it has thrown far off must not shorten the step of the whole sheet.
             trial -= elimination_.after_step(model(), x_, before, candidate, trial_.gradient);
@@ -200,7 +195,6 @@ void Newton::smooth() {
     const bool short_waves = rotation_ > 0.0 && rotation_ <= turning && step_.allFinite();
     if (!short_waves || !line_search(Order::hessian)) {
         system_.expect_indefinite();
-        keep_evaluation();
     }
     rotation_ = turned;
 }
@@ -225,9 +219,9 @@ Eigen::VectorXd Newton::settle(const Eigen::VectorXd& start) {
     x_ = start;
     if (!system_.missing_memory(model(), options_.memory_limit_mb).empty()) return x_;
     for (rotation_ = turning; rotation_ > settled && iterations_ < most_steps; ++iterations_) {
-        evaluate(Order::hessian);
+        evaluate(system_.wanted(rotation_));
         if (residual() <= options_.residual_tolerance_n || control_.stopped() || control_.timed_out() ||
-            !step(Order::hessian))
+            !step(true))
             break;
         relax_spots();
     }
@@ -355,8 +349,7 @@ bool Newton::must_stop(Equilibrium& result, int first_iteration) const {
 }
 
 /// One step: solve, line search. False when no step lowers energy or residual.
-bool Newton::step(Order order) {
-    const bool exact = order == Order::hessian;
+bool Newton::step(bool exact) {
     const bool solved = exact ? system_.exact_step(here(), rotation_, options_.residual_tolerance_n, step_)
                               : system_.gauss_newton_step(here(), step_);
     if (!solved) return false;
@@ -366,7 +359,8 @@ bool Newton::step(Order order) {
     if (settles_places_) places_ = bending_places(model(), held_, spins);
     // The next Hessian comes along for less, unless places move before it is wanted.
     const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty();
-    const bool moved = line_search(last_steps ? Order::hessian : Order::gradient);
+    const Order next = last_steps ? system_.wanted(rotation_) : Order::gradient;
+    const bool moved = line_search(next == Order::hessian ? next : Order::gradient);
     if (exact) system_.adapt(halved_);
     return moved;
 }
@@ -380,7 +374,7 @@ void Newton::iterate(Equilibrium& result) {
     const bool impossible = contact_ && passes_through_itself(model(), x_);
     for (;;) {
         const bool exact = loaded_ || rotation_ <= turning;
-        const Order order = exact ? Order::hessian : Order::gauss_newton;
+        const Order order = exact ? system_.wanted(rotation_) : Order::gauss_newton;
         constexpr double settled = 0.02;  // rad: what leans on the extension now will do so in the end
         if (rotation_ < settled) narrow_extension();
         model().unwind(x_);
@@ -402,7 +396,7 @@ void Newton::iterate(Equilibrium& result) {
         const bool at_rest = result.residual <= tolerance;
         const bool rounded = !at_rest && exact && at_rest_or_rounded(here(), tolerance);
         if (at_rest || rounded || stalled) {
-            if (!exact) evaluate(Order::hessian);
+            if (order_ != Order::hessian) evaluate(Order::hessian);
             result.stable = system_.certify(here());
             if (result.stable || escapes == 5) {
                 result.status = at_rest || rounded ? SolveStatus::converged : SolveStatus::not_converged;
@@ -423,12 +417,12 @@ void Newton::iterate(Equilibrium& result) {
         }
         if (must_stop(result, first_iteration)) return;
         ++iterations_;
-        stalled = !step(order);
+        stalled = !step(exact);
         if (stalled && !exact) {
             // Try the exact Hessian before giving up.
             rotation_ = turning;
             evaluate(Order::hessian);
-            stalled = !step(Order::hessian);
+            stalled = !step(true);
         }
         if (!stalled) {
             relax_spots();

@@ -59,17 +59,16 @@ class Newton {
     Newton(const Model& model, std::vector<char> held, bool loaded, const SolveOptions& options,
            const Control& control, const std::vector<int>& vertex_order);
     const Model& model() const { return own_ ? *own_ : *original_; }
-    NewtonPoint here() const { return {model(), x_, sums_}; }
+    NewtonPoint here() const { return {model(), x_, sums_, order_}; }
     EnergyTerms evaluate(const Eigen::VectorXd& x, Order order, AssembledSums& sums) const;
     void evaluate(Order order);
-    void keep_evaluation();
     double residual() const { return sums_.gradient.cwiseAbs().maxCoeff(); }
     bool is_good(const Eigen::VectorXd& x) const;
     bool may_take(const Eigen::VectorXd& x) const { return !wary_ || is_good(x); }
     double largest_turn() const;
 
     void iterate(Equilibrium& result);
-    bool step(Order order);
+    bool step(bool exact);
     bool must_stop(Equilibrium& result, int first_iteration) const;
     bool narrow_extension();
     ClearPath follow(const Eigen::VectorXd& direction, double length);
@@ -97,9 +96,11 @@ class Newton {
     Eigen::VectorXd x_;
     Eigen::VectorXd step_;
     AssembledSums sums_;
+    Order order_ = Order::gradient;  // of `sums_`
     AssembledSums trial_;
     EnergyTerms trial_terms_;
-    Eigen::VectorXd trial_at_;  // where `trial_` has the Hessian; empty when it has none
+    Order trial_order_ = Order::gradient;
+    Eigen::VectorXd trial_at_;  // where `trial_` has a Hessian; empty when it has none
     EnergyTerms terms_;
     bool halved_ = false;                   // the last line search had to
     double rotation_ = infinity;            // rms of the last step

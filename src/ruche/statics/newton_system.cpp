@@ -27,12 +27,12 @@ NewtonSystem::NewtonSystem(const Model& model, const std::vector<char>& held, bo
                            const std::vector<int>& vertex_order)
     : held_(held), loaded_(loaded), rigid_(model), cholesky_(model, vertex_order) {}
 
-void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift) {
+void NewtonSystem::build_matrix(const NewtonPoint& at, double shift) {
     const NodePattern& pattern = at.model.pattern();
     matrix_ = at.sums.hessian;
     rigid_.hold(pattern, at.x,
-                order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
-                                        : RigidMotions::Resisting::supports,
+                at.order == Order::hessian ? RigidMotions::Resisting::supports_and_loads
+                                           : RigidMotions::Resisting::supports,
                 matrix_);
     const std::vector<int>& start = pattern.column_start();
     const std::vector<int>& row = pattern.row_index();
@@ -46,29 +46,36 @@ void NewtonSystem::build_matrix(const NewtonPoint& at, Order order, double shift
 }
 
 /// Solves for Newton's step as well, if one is asked for.
-bool NewtonSystem::factorize(const NewtonPoint& at, Order order, double shift, Eigen::VectorXd* step) {
-    build_matrix(at, order, shift);
+bool NewtonSystem::factorize(const NewtonPoint& at, double shift, Eigen::VectorXd* step) {
+    build_matrix(at, shift);
     if (pattern_is_new_) cholesky_ = SparseCholesky(at.model, vertex_elimination_order(at.model.pattern()));
     pattern_is_new_ = false;
     ++factorizations_;
     const bool definite = step ? cholesky_.factorize_and_solve(matrix_, -at.sums.gradient, *step)
                                : cholesky_.factorize(matrix_);
-    factor_is_near_ = definite && order == Order::hessian && shift == 0.0;
+    factor_is_near_ = definite && at.order == Order::hessian && shift == 0.0;
     return definite;
 }
 
 bool NewtonSystem::step_with_mean(const NewtonPoint& at, Eigen::VectorXd& step) {
-    if (share_ == 0.0 && factorize(at, Order::hessian, 0.0, &step)) return true;
-    at.model.evaluate(at.x, Order::gauss_newton, gauss_newton_);
-    mean_.gradient = at.sums.gradient;
-    mean_.hessian.resize(at.sums.hessian.size());
-    if (share_ == 0.0) share_ = after_gauss_newton_ ? share_after_turning : first_share;
-    for (;; share_ = std::clamp(share_grows * share_, first_share, 1.0)) {
-        for (std::size_t i = 0; i < mean_.hessian.size(); ++i)
-            mean_.hessian[i] = (1.0 - share_) * at.sums.hessian[i] + share_ * gauss_newton_.hessian[i];
-        if (factorize({at.model, at.x, mean_}, Order::gauss_newton, 0.0, &step)) return true;
-        if (share_ == 1.0) return false;
+    for (bool at_hand = at.order == form();; at_hand = false) {
+        if (!at_hand) {
+            at.model.evaluate(at.x, form(), mean_);
+            mean_.gradient = at.sums.gradient;  // without the supports' reactions
+        }
+        const NewtonPoint mean = {at.model, at.x, at_hand ? at.sums : mean_, form()};
+        if (factorize(mean, 0.0, &step)) return true;
+        if (share_ == 1.0) return gauss_newton_step(mean, step);
+        if (share_ == 0.0) {
+            share_ = after_gauss_newton_ ? share_after_turning : first_share;
+        } else {
+            share_ = std::clamp(share_grows * share_, first_share, 1.0);
+        }
     }
+}
+
+Order NewtonSystem::wanted(double rotation) const {
+    return loaded_ || may_use_last_factor(rotation) ? Order::hessian : form();
 }
 
 void NewtonSystem::expect_indefinite() {
@@ -97,7 +104,7 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
     constexpr int most_steps = 8;      // a solve costs about a tenth of a factorisation
     constexpr double useful = 0.05;    // of the residual: the next step has as much to do with the exact one
     constexpr double hopeful = 0.7;    // by which each step has to lower the residual as the factor weighs it
-    build_matrix(at, Order::hessian, 0.0);
+    build_matrix(at, 0.0);
     Eigen::VectorXd rest = -at.sums.gradient;
     const double first = rest.norm();
     const double enough = accuracy * first;
@@ -131,38 +138,38 @@ bool NewtonSystem::solve_with_last_factor(const NewtonPoint& at, double toleranc
 
 bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tolerance,
                               Eigen::VectorXd& step) {
-    if (factor_is_near_ && rotation < nearly_at_rest && solve_with_last_factor(at, tolerance, step))
+    if (at.order == Order::hessian && may_use_last_factor(rotation) &&
+        solve_with_last_factor(at, tolerance, step))
         return true;
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
-        bool ready = factorize(at, Order::hessian, 0.0, &step);
+        bool ready = factorize(at, 0.0, &step);
         // The last one may have been far more than the soft directions need, which then hardly move: where
         // some parts are much stiffer than others the mean says nothing about those.
         const double first = shift_ > 0.0 ? std::max(0.1 * shift_, 1e-16 * mean) : 1e-9 * mean;
         for (shift_ = ready ? shift_ : first; !ready && shift_ < 1e3 * mean; shift_ *= 4.0)
-            ready = factorize(at, Order::hessian, shift_, &step);
+            ready = factorize(at, shift_, &step);
         return ready && step.allFinite();
     }
-    if (step_with_mean(at, step)) return step.allFinite();
-    return gauss_newton_step({at.model, at.x, mean_}, step);
+    return step_with_mean(at, step) && step.allFinite();
 }
 
 bool NewtonSystem::gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step) {
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     after_gauss_newton_ = true;
-    bool ready = factorize(at, Order::gauss_newton, 0.0, &step);
+    bool ready = factorize(at, 0.0, &step);
     for (double shift = 1e-9 * mean; !ready && shift < 1e3 * mean; shift *= 100.0)
-        ready = factorize(at, Order::gauss_newton, shift, &step);
+        ready = factorize(at, shift, &step);
     return ready && step.allFinite();
 }
 
-bool NewtonSystem::certify(const NewtonPoint& at) { return factorize(at, Order::hessian); }
+bool NewtonSystem::certify(const NewtonPoint& at) { return factorize(at); }
 
 bool NewtonSystem::steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& direction) {
     const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     bool ready = false;
     for (double shift = 1e-8 * mean; !ready && shift < 1e3 * mean; shift *= 10.0)
-        ready = factorize(at, Order::hessian, shift);
+        ready = factorize(at, shift);
     if (!ready) return false;
     for (int i = 0; i < 20; ++i) direction = cholesky_.solve(direction.normalized()).col(0);
     return true;
@@ -170,8 +177,7 @@ bool NewtonSystem::steepest_curvature(const NewtonPoint& at, Eigen::VectorXd& di
 
 std::string NewtonSystem::missing_memory(const Model& model, double limit_mb) const {
     constexpr double megabyte = 1e6;
-    constexpr double matrices =
-        5.0;  // exact, Gauss-Newton, their mean, a trial's, the one that is factorised
+    constexpr double matrices = 4.0;  // of the state, its mean, of a trial, the one that is factorised
     const double needed =
         1.05 * factor_megabytes() +
         matrices * sizeof(double) * static_cast<double>(model.pattern().row_index().size()) / megabyte;

@@ -14,7 +14,8 @@ namespace ruche {
 struct NewtonPoint {
     const Model& model;
     const Eigen::VectorXd& x;
-    const AssembledSums& sums;  ///< gradient, and the Hessian as far as it has been asked for
+    const AssembledSums& sums;  ///< as far as `order` says
+    Order order = Order::hessian;
 };
 
 /// The linear systems of Newton's method for one sheet and their factors: its pattern is analysed once, and
@@ -30,7 +31,11 @@ class NewtonSystem {
     NewtonSystem(const Model& model, const std::vector<char>& held, bool loaded,
                  const std::vector<int>& vertex_order);
 
-    /// Newton's step with the exact Hessian, which `at.sums` holds. While the sheet hardly turns (`rotation`,
+    /// What the next exact step needs in `at.sums`, after a step that turned the sheet by `rotation` (rms,
+    /// rad); with another Hessian there it takes longer.
+    Order wanted(double rotation) const;
+
+    /// Newton's step with the exact Hessian. While the sheet hardly turns (`rotation`,
     /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick, and no further
     /// than a residual of `tolerance` (N) asks for. Where the Hessian is not positive definite, fabric is
     /// about to buckle: then with a mean of it and the Gauss-Newton form; the latter's share is kept from
@@ -48,8 +53,8 @@ class NewtonSystem {
     /// The step with the Gauss-Newton form, which `at.sums` holds.
     [[nodiscard]] bool gauss_newton_step(const NewtonPoint& at, Eigen::VectorXd& step);
 
-    /// Whether the state is a strict minimum modulo free rigid motions: the exact Hessian has a Cholesky
-    /// factor.
+    /// Whether the state is a strict minimum modulo free rigid motions: the exact Hessian, which `at.sums`
+    /// holds, has a Cholesky factor.
     [[nodiscard]] bool certify(const NewtonPoint& at);
 
     /// Solves with the last matrix that could be factorised; one column per right-hand side.
@@ -77,8 +82,10 @@ class NewtonSystem {
     std::string missing_memory(const Model& model, double limit_mb) const;
 
   private:
-    void build_matrix(const NewtonPoint& at, Order order, double shift);
-    bool factorize(const NewtonPoint& at, Order order, double shift = 0.0, Eigen::VectorXd* step = nullptr);
+    Order form() const { return share_ > 0.0 ? Order::mean(share_) : Order::hessian; }
+    bool may_use_last_factor(double rotation) const { return factor_is_near_ && rotation < nearly_at_rest; }
+    void build_matrix(const NewtonPoint& at, double shift);
+    bool factorize(const NewtonPoint& at, double shift = 0.0, Eigen::VectorXd* step = nullptr);
     bool step_with_mean(const NewtonPoint& at, Eigen::VectorXd& step);
     bool solve_with_last_factor(const NewtonPoint& at, double tolerance, Eigen::VectorXd& step);
 
@@ -87,7 +94,6 @@ class NewtonSystem {
     RigidMotions rigid_;
     SparseCholesky cholesky_;
     std::vector<double> matrix_;
-    AssembledSums gauss_newton_;
     AssembledSums mean_;
     bool after_gauss_newton_ = false;  // the last step was, and no exact one has been taken since
     bool rough_ = false;               // expected to be, and no exact step has been taken since
@@ -109,7 +115,7 @@ double mean_stiffness(const NodePattern& pattern, const std::vector<double>& hes
 
 /// Whether every component of the gradient is below `tolerance` (N) or below what the last digits of the
 /// positions decide, eps sum_j |H_ij| |x_j|: where fabric leans on the steep end of its law that may be more.
-/// `at.sums` holds the exact Hessian.
+/// Any form of the Hessian tells how large it is.
 bool at_rest_or_rounded(const NewtonPoint& at, double tolerance);
 
 }  // namespace ruche

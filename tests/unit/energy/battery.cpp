@@ -58,7 +58,7 @@ Energy energy_of(const Model& model) {
                 const double value = model.evaluate(x, order, sums).total();
                 const auto zero = [&]() -> Eigen::MatrixXd { return Eigen::MatrixXd::Zero(size, size); };
                 return {value, order == Order::value ? Eigen::VectorXd::Zero(size) : sums.gradient,
-                        wants_hessian(order) ? model.pattern().full_matrix(sums.hessian).toDense() : zero()};
+                        order.wants_hessian() ? model.pattern().full_matrix(sums.hessian).toDense() : zero()};
             }};
 }
 
@@ -127,6 +127,13 @@ void check_orders(const Energy& energy, const Eigen::VectorXd& x) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(part.hessian, Eigen::EigenvaluesOnly);
     // Rounding of an eigenvalue: a few units in the last place of the largest one.
     CHECK(eigen.eigenvalues().minCoeff() >= -1e-13 * eigen.eigenvalues().cwiseAbs().maxCoeff());
+    for (const double share : {0.0, 0.3, 1.0}) {
+        const Sums mean = energy.evaluate(x, Order::mean(share));
+        CHECK(mean.value == hessian.value);
+        CHECK(mean.gradient == hessian.gradient);
+        CHECK(largest(mean.hessian - (1.0 - share) * hessian.hessian - share * part.hessian) <=
+              1e-13 * (largest(hessian.hessian) + largest(part.hessian)));
+    }
 }
 
 void check_same(const Sums& a, const Sums& b, double tolerance) {

@@ -382,7 +382,7 @@ TEST_CASE("model: a patch has the derivatives of the whole sheet and the differe
             const double force = whole.gradient.cwiseAbs().maxCoeff();
             for (int i = 0; i < patch.size(); ++i)
                 CHECK(std::abs(part.gradient[i] - whole.gradient[patch.unknowns()[i]]) < 1e-13 * force);
-            if (!wants_hessian(order)) continue;
+            if (!order.wants_hessian()) continue;
             const Eigen::SparseMatrix<double> full = model.pattern().full_matrix(whole.hessian);
             const double stiffness = part.hessian.cwiseAbs().maxCoeff();
             for (int i = 0; i < patch.size(); ++i) {

@@ -50,7 +50,7 @@ Energy squared_distance(PairKind kind) {
                 const Vec3 r = shortest_vector(closest, at);
                 Sums sums{r.squaredNorm(), Eigen::VectorXd::Zero(12), Eigen::MatrixXd::Zero(12, 12)};
                 if (order != Order::value) sums.gradient = squared_distance_gradient(closest, r);
-                if (wants_hessian(order)) sums.hessian = squared_distance_hessian(closest, r, at);
+                if (order.wants_hessian()) sums.hessian = squared_distance_hessian(closest, r, at);
                 return sums;
             }};
 }
