@@ -16,7 +16,7 @@ struct BentEdge {
 /// The edges that take nearly all of the bending, when few do.
 std::vector<BentEdge> most_bent(const MeshEdges& mesh, std::span<const Vec3> spins) {
     constexpr double few = 0.005;       // of all edges
-    constexpr double nearly_all = 0.9;  // of the sum of squares: on the few
+    constexpr double nearly_all = 0.8;  // of the sum of squares: on the few
     constexpr double all = 0.99;        // that is enough
     constexpr double hardly = 0.01;     // rad
     std::vector<BentEdge> bent;

@@ -200,11 +200,17 @@ void Newton::smooth() {
 }
 
 /// Where the last step has bent the sheet in a few places only, those come to rest on their own, all else
-/// held.
+/// held, unless the forces on them, which `trial_` has, are small beside others.
 void Newton::settle_places(Eigen::VectorXd& x) {
+    constexpr double worth_it = 0.1;
     try {
         for (const std::vector<int>& place : places_) {
             if (control_.stopped() || control_.timed_out()) return;
+            double force = 0.0;
+            for (const int v : place)
+                force =
+                    std::max(force, trial_.gradient.segment<3>(3 * Eigen::Index{v}).cwiseAbs().maxCoeff());
+            if (force < worth_it * largest(trial_)) continue;
             const SheetPiece piece = cut_out(model(), place, x);
             piece.place(Newton(piece, loaded_, options_, control_).settle(piece.take(x)), x);
         }
