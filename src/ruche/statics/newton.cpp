@@ -193,9 +193,7 @@ void Newton::smooth() {
     // What turns the sheet is no short wave. Where no part of it lowers the energy, Newton's method goes on
     // from here as well.
     const bool short_waves = rotation_ > 0.0 && rotation_ <= turning && step_.allFinite();
-    if (!short_waves || !line_search(Order::hessian)) {
-        system_.expect_indefinite();
-    }
+    if (!short_waves || !line_search(Order::hessian)) system_.expect_indefinite();
     rotation_ = turned;
 }
 
@@ -363,10 +361,10 @@ bool Newton::step(bool exact) {
     rotation_ = retraction_.rms_rotation(spins);
     places_.clear();
     if (settles_places_) places_ = bending_places(model(), held_, spins);
-    // The next Hessian comes along for less, unless places move before it is wanted.
-    const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty();
-    const Order next = last_steps ? system_.wanted(rotation_) : Order::gradient;
-    const bool moved = line_search(next == Order::hessian ? next : Order::gradient);
+    // The next Hessian comes along for less, unless places move before it is wanted or its form is not known.
+    const bool last_steps = exact && rotation_ < NewtonSystem::nearly_at_rest && places_.empty() &&
+                            system_.wanted(rotation_) == Order::hessian;
+    const bool moved = line_search(last_steps ? Order::hessian : Order::gradient);
     if (exact) system_.adapt(halved_);
     return moved;
 }

@@ -141,8 +141,8 @@ bool NewtonSystem::exact_step(const NewtonPoint& at, double rotation, double tol
     if (at.order == Order::hessian && may_use_last_factor(rotation) &&
         solve_with_last_factor(at, tolerance, step))
         return true;
-    const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
     if (loaded_) {
+        const double mean = mean_stiffness(at.model.pattern(), at.sums.hessian);
         bool ready = factorize(at, 0.0, &step);
         // The last one may have been far more than the soft directions need, which then hardly move: where
         // some parts are much stiffer than others the mean says nothing about those.

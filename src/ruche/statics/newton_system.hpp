@@ -35,9 +35,9 @@ class NewtonSystem {
     /// rad); with another Hessian there it takes longer.
     Order wanted(double rotation) const;
 
-    /// Newton's step with the exact Hessian. While the sheet hardly turns (`rotation`,
-    /// rms of the last step, rad) by conjugate gradients on the last factor, if that is quick, and no further
-    /// than a residual of `tolerance` (N) asks for. Where the Hessian is not positive definite, fabric is
+    /// Newton's step with the exact Hessian. While the sheet hardly turns (`rotation`, rms of the last step,
+    /// rad) by conjugate gradients on the last factor, if that is quick, and no further than a residual of
+    /// `tolerance` (N) asks for. Where the Hessian is not positive definite, fabric is
     /// about to buckle: then with a mean of it and the Gauss-Newton form; the latter's share is kept from
     /// step to step. On its own that form knows nothing of the compression that makes fabric buckle, and a
     /// barely definite matrix runs far along the buckling shapes.
